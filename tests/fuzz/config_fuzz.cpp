@@ -12,10 +12,6 @@
 namespace beampipe {
 namespace {
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
 // Calls read(), which may throw what the readers say that they throw.
 void expect_value_or_line(const std::function<void()>& read) {
   try {

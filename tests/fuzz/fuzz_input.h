@@ -50,11 +50,14 @@ inline std::vector<std::string_view> parts_of(std::string_view text, std::size_t
   return parts;
 }
 
-// Ends the program unless the message is one line.
+// Ends the program unless it holds.
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
 inline void require_one_line(std::string_view message) {
-  if (message.empty()) std::abort();
-  for (const char c : message)
-    if (static_cast<unsigned char>(c) < 0x20) std::abort();
+  require(!message.empty());
+  for (const char c : message) require(static_cast<unsigned char>(c) >= 0x20);
 }
 
 }  // namespace beampipe

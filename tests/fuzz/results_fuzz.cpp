@@ -22,10 +22,6 @@
 namespace beampipe {
 namespace {
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
 // Calls read(), which may throw any error of one line, but not one of the standard library or of the file system, which
 // would say nothing about the file.
 template <class Read>

@@ -13,12 +13,6 @@ Trace covered_bin() {
   return pixel_trace(32, 32, {{{{-10, -10, 0.5}, {100, -10, 0.5}, {-10, 100, 0.5}}, glm::vec3(0.5f)}});
 }
 
-FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
-  FrameInput run{1};
-  run.memory = memory;
-  return parse_technique(spec).render(trace, 0, run);
-}
-
 std::uint64_t on_chip_bytes(const FrameResult& result) {
   for (const Buffer& buffer : result.buffers)
     if (buffer.name == "open_pixels") return buffer.peak_bytes;

@@ -9,6 +9,11 @@ namespace beampipe {
 inline FrameResult render(const std::string& spec, const Trace& trace) {
   return parse_technique(spec).render(trace, 0, {1});
 }
+inline FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
+  FrameInput run{1};
+  run.memory = memory;
+  return parse_technique(spec).render(trace, 0, run);
+}
 inline Image picture(const std::string& spec, const Trace& trace) { return render(spec, trace).image; }
 
 inline glm::vec4 rgba_at(const Image& image, std::uint32_t x, std::uint32_t y) {

@@ -83,6 +83,10 @@ inline Material textured_material(std::uint32_t image, AlphaMode mode = AlphaMod
   return material;
 }
 
+inline void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double bound) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], bound) << found.x << ' ' << found.y << ' ' << found.z;
+}
+
 // Everything lives as long as this does.
 struct ShadedScene {
   Trace trace;

@@ -65,6 +65,17 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
   if (!stream.flush()) ADD_FAILURE() << "cannot write " << file;
 }
 
+// The text with `other` in place of the first `part`.
+inline std::string replaced(std::string text, const std::string& part, const std::string& other) {
+  return text.replace(text.find(part), part.size(), other);
+}
+
+inline std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
 // A picture in which R, G and B have the same value everywhere, and A = 1.
 inline Image flat_image(std::uint32_t width, std::uint32_t height, float value) {
   Image image{width, height, std::vector<float>(std::size_t{4} * width * height, value)};

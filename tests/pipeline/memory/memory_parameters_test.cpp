@@ -8,12 +8,6 @@
 
 namespace beampipe::memory_parameters_test {
 
-FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
-  FrameInput run{1};
-  run.memory = memory;
-  return parse_technique(spec).render(trace, 0, run);
-}
-
 std::uint64_t dram_bytes(const FrameResult& result) {
   std::uint64_t bytes = 0;
   for (const StageCounters& stage : result.stages) bytes += stage.dram_bytes;

@@ -209,10 +209,6 @@ Material white_metal() {
   return material;
 }
 
-void expect_near(const glm::vec3& found, const glm::vec3& expected, double bound) {
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], bound) << found.x << ' ' << found.y << ' ' << found.z;
-}
-
 TEST(SurfaceShader, NormalsOfVerticesAndOfTriangles) {
   SurfaceTrace scene = facing(white_metal());
   expect_near(normal_seen(scene), {0, 0, 1}, 1e-5);

@@ -169,18 +169,13 @@ TEST_F(InspectTest, WritesAPictureAndAPage) {
     return read_text(folder_ / file);
   };
   const std::string svg = with("pixel.svg"), page = with("pixel.html");
-  const auto count = [](const std::string& text, const std::string& part) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
-    return found;
-  };
-  EXPECT_EQ(count(svg, "class=\"title\""), 4u) << "a panel for each pixel and technique";
-  EXPECT_EQ(count(svg, "<circle"), 2u * 256 + 2u * 32) << "every position is drawn";
-  EXPECT_EQ(count(svg, "<text"), count(svg, "</text>"));
-  EXPECT_EQ(count(svg, "<svg"), 1u);
-  EXPECT_EQ(count(page, "<svg"), 4u);
-  EXPECT_EQ(count(page, "<pre>"), 4u);
-  EXPECT_EQ(count(page, "src="), 0u) << "the page opens offline";
+  EXPECT_EQ(count_of(svg, "class=\"title\""), 4u) << "a panel for each pixel and technique";
+  EXPECT_EQ(count_of(svg, "<circle"), 2u * 256 + 2u * 32) << "every position is drawn";
+  EXPECT_EQ(count_of(svg, "<text"), count_of(svg, "</text>"));
+  EXPECT_EQ(count_of(svg, "<svg"), 1u);
+  EXPECT_EQ(count_of(page, "<svg"), 4u);
+  EXPECT_EQ(count_of(page, "<pre>"), 4u);
+  EXPECT_EQ(count_of(page, "src="), 0u) << "the page opens offline";
   EXPECT_EQ(folder_.list(), (Names{"pixel.html", "pixel.svg", "trace.json"}));
 }
 

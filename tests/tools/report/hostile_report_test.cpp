@@ -11,10 +11,6 @@
 
 namespace beampipe::hostile_report_test {
 
-std::string with(std::string text, const std::string& whole, const std::string& broken) {
-  return text.replace(text.find(whole), whole.size(), broken);
-}
-
 // Compared, with modelled times.
 const std::string kReport =
     R"({"beampipe_report": 1, "trace": "dots.json", "msaa_ladder": [{"samples": 1, "rmse": 0.1}],
@@ -59,25 +55,25 @@ TEST_F(HostileReport, TechniquesAndFramesMustBeThere) {
   EXPECT_EQ(refusal(R"({"beampipe_report": 1, "trace": "a", "results": [{"technique": "beam", "frames": [],
                        "peak_bytes_per_pixel": 6}]})"),
             "not a report of beampipe: expected a technique with at least one frame, found none of \"beam\"");
-  EXPECT_EQ(refusal(with(kReport, R"("implementations": {"shaders": {}})", R"("implementations": {})")),
+  EXPECT_EQ(refusal(replaced(kReport, R"("implementations": {"shaders": {}})", R"("implementations": {})")),
             "expected hardware with an implementation, found none");
 }
 
 TEST_F(HostileReport, NamesInMessagesAreOneLine) {
-  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.exr")", R"("../\n")")),
+  EXPECT_EQ(refusal(replaced(kReport, R"("beam/frame_0000.exr")", R"("../\n")")),
             R"(it names "../\n"; expected a file in its own folder)");
-  EXPECT_EQ(refusal(with(kReport, R"("beam/inspections.json")", R"("a\n")")),
+  EXPECT_EQ(refusal(replaced(kReport, R"("beam/inspections.json")", R"("a\n")")),
             R"(expected the inspections of "beam" in "beam/inspections.json", found "a\n")");
-  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.exr")", R"("a\n.exr")")),
+  EXPECT_EQ(refusal(replaced(kReport, R"("beam/frame_0000.exr")", R"("a\n.exr")")),
             R"(it names "a\n.exr"; expected a file in its own folder)");
   const std::string long_name(5000, 'x');
-  EXPECT_TRUE(refusal(with(kReport, "beam/frame_0000.exr", long_name)).starts_with("it names \"xxx"));
+  EXPECT_TRUE(refusal(replaced(kReport, "beam/frame_0000.exr", long_name)).starts_with("it names \"xxx"));
 }
 
 TEST_F(HostileReport, ConditionsAreThoseThatMakeSense) {
   const auto conditions = [&](const std::string& members) {
     return report_conditions(
-        read(with(kReport, R"("clock_mhz")", R"("name": "GPU", "clock_mhz")").insert(1, members + ",")));
+        read(replaced(kReport, R"("clock_mhz")", R"("name": "GPU", "clock_mhz")").insert(1, members + ",")));
   };
   EXPECT_GT(conditions(R"("frames": [], "trace_frames": 0)").size(), 0u);
   EXPECT_THROW(conditions(R"("frames": [{"index": 0}], "trace_frames": 1)"), JsonError);
@@ -103,7 +99,7 @@ TEST_F(HostileReport, NamesOfImplementationsCannotLeaveTheFolder) {
 TEST_F(HostileReport, AxesShowNumbersOfAnySize) {
   for (const char* number : {"1.7e308", "1e-308", "1e300"}) {
     const ReportFile report =
-        read(with(kReport, R"("equivalent_msaa": 8)", std::string(R"("equivalent_msaa": )") + number));
+        read(replaced(kReport, R"("equivalent_msaa": 8)", std::string(R"("equivalent_msaa": )") + number));
     EXPECT_LT(gnuplot_script(frontier_plot({report}), PlotFormat::svg).size(), 10000u) << number;
   }
 }
@@ -127,7 +123,7 @@ TEST_F(HostileReport, CommandsNameTheFile) {
   EXPECT_EQ(
       run_program({"model", folder_.string()}).err,
       "beampipe: error: " + file + ": not a report of beampipe: expected the key \"memory_system\", found none\n");
-  write_text(folder_ / "report.json", with(kReport, R"("trace")", R"("claims": [{}], "trace")"));
+  write_text(folder_ / "report.json", replaced(kReport, R"("trace")", R"("claims": [{}], "trace")"));
   EXPECT_EQ(run_program({"claims", folder_.string()}).err,
             "beampipe: error: " + file + ": not a report of beampipe: expected the key \"name\", found none\n");
 }

@@ -35,12 +35,6 @@ class PlotTest : public RunInFolder {
   }
 };
 
-std::size_t count_of(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
 TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReference) {
   const ReportFile report = read_report(make_report("a", report_text("beam", 42, 100, 0.01, 50)));
   EXPECT_EQ(report.scene, "rods");

@@ -43,6 +43,11 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
     "frames": [{"index": 3, "image": "reference/frame_0003.exr", "picture": "reference/frame_0003.png", "wall_ms": {"median": 1}, "stages": []},
                {"index": 4, "image": "reference/frame_0004.exr", "picture": "reference/frame_0004.png", "wall_ms": {"median": 1}, "stages": []}]}]})";
 
+// The report with `more` inserted before `place`.
+std::string report_with(const std::string& place, const std::string& more, std::string text = kReport) {
+  return text.insert(text.find(place), more);
+}
+
 class ReportParts : public InFolder {
  protected:
   ReportFile read(const std::string& text = kReport) const {
@@ -90,11 +95,9 @@ TEST_F(ReportParts, StagesAreMeansOverFrames) {
 
 // A frame has the stages for alpha only where something needs them.
 TEST_F(ReportParts, StagesOfFramesAreAddedUpByName) {
-  std::string text = kReport;
-  const std::string compose = R"({"stage": "compose", "ops": {"total": 1000000)";
-  text.insert(text.find(compose),
-              R"({"stage": "alpha_mask", "ops": {"total": 8}, "bytes_read": 0, "bytes_written": 0},)");
-  const std::vector<Table> tables = report_tables(read(text));
+  const std::vector<Table> tables = report_tables(
+      read(report_with(R"({"stage": "compose", "ops": {"total": 1000000)",
+                       R"({"stage": "alpha_mask", "ops": {"total": 8}, "bytes_read": 0, "bytes_written": 0},)")));
   const Table& stages = named(tables, "stages");
   ASSERT_EQ(stages.rows.size(), 2u);
   expect_cells(stages, 0, {{"stage", "compose"}, {"ops", 2000000}});
@@ -158,9 +161,7 @@ TEST_F(ReportParts, RooflineLiesUnderTheRoof) {
 }
 
 TEST_F(ReportParts, WithoutHardwareTheRooflineIsAboutLogicalBytes) {
-  std::string text = kReport;
-  text.replace(text.find("\"hardware\""), 10, "\"software\"");
-  const ScatterPlot plot = roofline_plot(read(text), "beam");
+  const ScatterPlot plot = roofline_plot(read(replaced(kReport, "\"hardware\"", "\"software\"")), "beam");
   ASSERT_EQ(plot.series.size(), 1u);
   EXPECT_EQ(plot.series[0].points[0].x, 4);
   EXPECT_EQ(plot.series[0].points[0].y, 2) << "millions per frame";
@@ -191,9 +192,7 @@ TEST_F(ReportParts, TimesOfStagesHaveAMarkWhereAllWouldEndAtOnce) {
 
 TEST_F(ReportParts, CausesAreBarsInPercent) {
   EXPECT_FALSE(causes_plot(read()).has_value());
-  std::string text = kReport;
-  text.insert(text.find("\"error\""), R"("error_causes": {"leak": 1.25, "mask": -0.25}, )");
-  const ReportFile report = read(text);
+  const ReportFile report = read(report_with("\"error\"", R"("error_causes": {"leak": 1.25, "mask": -0.25}, )"));
   const BarPlot plot = causes_plot(report).value();
   EXPECT_EQ(plot.categories, std::vector<std::string>{"beam"});
   ASSERT_EQ(plot.parts.size(), 2u);
@@ -295,9 +294,7 @@ TEST(PageFrames, AreAllOrEvenlySpacedWithTheOneThatIsShown) {
 }
 
 TEST_F(ReportParts, LayersTakeOnlyFilesOfTheFolder) {
-  std::string text = kReport;
-  text.replace(text.find("beam/frame_0003.exr"), 19, "../frame_00000003.exr");
-  EXPECT_THROW(report_layers(read(text), 0), ReportError);
+  EXPECT_THROW(report_layers(read(replaced(kReport, "beam/frame_0003.exr", "../frame_00000003.exr")), 0), ReportError);
   const TemporaryFolder other;
   write_text(other / "secret.exr", encode_exr(flat_image(2, 1, 0.5f)));
   std::filesystem::create_directory(folder_ / "beam");
@@ -331,14 +328,10 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   EXPECT_TRUE(layers.at("techniques")[0].at("picture").at("png").get<std::string>().starts_with(
       "data:image/png;base64,iVBORw0KGgo"));
 
-  std::string text = kReport;
-  text.replace(text.find("dots.json"), 9, "</script>");
-  const ReportFile hostile = read(text);
+  const ReportFile hostile = read(replaced(kReport, "dots.json", "</script>"));
   const std::string page = page_html(hostile, report_tables(hostile), report_figures(hostile), Json::array({layers}), 3,
                                      report_inspections(hostile));
-  std::size_t ends = 0;
-  for (std::size_t at = page.find("</script>"); at != page.npos; at = page.find("</script>", at + 1)) ++ends;
-  EXPECT_EQ(ends, 3u) << "text from the report cannot end a script";
+  EXPECT_EQ(count_of(page, "</script>"), 3u) << "text from the report cannot end a script";
   EXPECT_EQ(page.find("{{"), page.npos) << "all places are filled";
 }
 
