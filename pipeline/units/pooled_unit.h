@@ -57,7 +57,7 @@ class ComposePooledUnit {
     words_.merge(fragments);
     for (std::uint64_t i = 0; i < result.collections; ++i) words_.scan();
     collections_ += result.collections;
-    if (frame_pool_) frame_pool_->add(result.claims);
+    claims_.insert(claims_.end(), result.claims.begin(), result.claims.end());
     finish(result, shade);
   }
 
@@ -69,7 +69,11 @@ class ComposePooledUnit {
     finish(result, shade);
     records_.flush(stage_.counters);
     if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
-    if (!frame_pool_) report_pool();
+    if (frame_pool_) {
+      frame_pool_->add(claims_, pixels_.pool.most_beyond_guaranteed());
+    } else {
+      report_pool();
+    }
     bin_.triangle_fetches().flush(stage_.counters);
     return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage(StageId::resolve).timed(),
                    bin_.observers());
@@ -114,6 +118,7 @@ class ComposePooledUnit {
   OpenPixelStore words_;
   RecordMemory records_;
   std::uint64_t collections_ = 0;
+  std::vector<PoolClaim> claims_;
 };
 
 }  // namespace beampipe

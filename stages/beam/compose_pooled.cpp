@@ -537,7 +537,7 @@ class PooledComposer {
 
   // ---- Limit: the analytic estimate, no farther from the counted one than the tolerances allow ----
 
-  PixelColor limited() {
+  HWY_INLINE PixelColor limited() {
     const float count = static_cast<float>(at_.final.count());
     if (at_.area <= 0 && count == 0) return {0.0f, glm::vec3(0.0f)};
     ++work.limited;

@@ -66,7 +66,7 @@ class PixelAtHand {
   void own(std::size_t k, const Mask& positions) { positions.store(record.owned(k)); }
 
   // Takes the pixel's state apart.
-  void open() {
+  HWY_INLINE void open() {
     empty = final = Mask::filled(false);
     new_slots = 0;
     if (word_->kind == PixelKind::open) {
@@ -151,7 +151,7 @@ class PixelAtHand {
     pixels_.covers[index] = depth;
     work_.bytes_written += kPixelWordBytes;
   }
-  void store() {
+  HWY_INLINE void store() {
     if (word_->kind != PixelKind::open) {
       const bool has_cover =
           word_->kind == PixelKind::covered && shape.owners > 0 && record.slots[0].triangle() == word_->number;
@@ -168,7 +168,7 @@ class PixelAtHand {
     store_sums();
   }
   // The same where positions have not changed.
-  void store_sums() {
+  HWY_INLINE void store_sums() {
     resize(shape.chunks(Words));
     float& most = result_.maps.record_bytes[index];
     most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + pixels_.pool.link_bytes())));
@@ -196,7 +196,7 @@ class PixelAtHand {
 
   // Free chunks are linked: each one that is taken says which one is the next. The last chunk of the record is linked
   // to the first one that is taken; the last one that is given back, to those that are free already.
-  void resize(std::uint32_t count) {
+  HWY_INLINE void resize(std::uint32_t count) {
     ChunkPool::Chunks& chunks = word_->chunks;
     const ChunkPool::Chunks before = chunks;
     if (count == before.count) return;

@@ -32,7 +32,11 @@ TEST(RecordMemory, RecordsTakeTheChunksThatWereGivenBack) {
 TEST(FramePool, IsFullWhenItHasTooFewChunks) {
   const auto full_at = [](const std::vector<std::vector<PoolClaim>>& of_bins) {
     FramePool pool(2, 2 * (kChunkBytes + kFrameChunkLinkBytes), 1);
-    for (const std::vector<PoolClaim>& claims : of_bins) pool.add(claims);
+    for (const std::vector<PoolClaim>& claims : of_bins) {
+      std::int32_t chunks = 0, most = 0;
+      for (const PoolClaim& claim : claims) most = std::max(most, chunks += claim.chunks);
+      pool.add(claims, static_cast<std::size_t>(most));
+    }
     return pool.full_at();
   };
   EXPECT_EQ(full_at({}), ~0u);
