@@ -15,17 +15,17 @@ TEST(RecordMemory, RecordsTakeTheChunksThatWereGivenBack) {
   RecordMemory memory({parameters}, "records", 3, {26, 18});
   StageCounters counters;
   std::uint32_t key = 0;
-  memory.access({++key, 0, 10, true}, counters);  // bytes 0 to 180 of the first line: six sectors
-  memory.access({++key, 1, 6, true}, counters);   // 180 to 252, and 0 to 36 of the second line: three, and two
-  memory.access({++key, 1, 6, false}, counters);
-  memory.access({++key, 0, 0, true}, counters);   // ten are free again: the last one's link is written
-  memory.access({++key, 2, 10, true}, counters);  // and they are taken
+  memory.access({++key, 0, 14, true}, counters);  // the first line: eight sectors
+  memory.access({++key, 1, 14, true}, counters);  // the second one
+  memory.access({++key, 1, 14, false}, counters);
+  memory.access({++key, 0, 0, true}, counters);   // fourteen are free again: the last one's link is written
+  memory.access({++key, 2, 14, true}, counters);  // and they are taken
   memory.flush(counters);
-  EXPECT_EQ(counters.sector_bytes, (6u + 5 + 5 + 1 + 6) * 32);
-  EXPECT_EQ(counters.dram_bytes, 2u * 256) << "sixteen chunks have been in use, in two lines";
+  EXPECT_EQ(counters.sector_bytes, (8u + 8 + 8 + 1 + 8) * 32);
+  EXPECT_EQ(counters.dram_bytes, 2u * 256) << "two lines have been in use";
   std::vector<float> bytes(3);
   memory.add_bytes(bytes);
-  EXPECT_EQ(bytes, (std::vector<float>{10 * 18, 2 * 6 * 18, 10 * 18}));
+  EXPECT_EQ(bytes, (std::vector<float>{14 * 18, 2 * 14 * 18, 14 * 18}));
 }
 
 // A pool of four chunks, of which one is guaranteed to each of two pixels.
