@@ -2,8 +2,8 @@
 # Makes the pictures of the pages: docs/pictures.sh PROGRAM [MODELS]
 #
 # MODELS is the folder of the eight models of docs/accuracy.md. Without it, frontier.svg stays as it is: it takes a sweep
-# over all scenes, which goes on where it was interrupted. Needs gnuplot for that figure alone. Traces and results stay
-# in build/pictures.
+# over all scenes, which goes on where it was interrupted. Needs gnuplot for that figure and for report.png, which also
+# needs Chromium; without that, it stays as it is. Traces and results stay in build/pictures.
 set -euo pipefail
 
 (($# == 1 || $# == 2)) || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
@@ -23,6 +23,14 @@ cp fence/msaa_8/frame_0000.png "$docs/pictures/fence_msaa_8.png"
 # The worst pixel of the boat: docs/tutorial.md.
 "$program" make boat -o boat.json
 "$program" inspect boat.json --worst 1 -t beam -o "$docs/pictures/inspect_boat.svg" >inspect_boat.txt
+
+# A report: docs/tutorial.md.
+if command -v chromium >/dev/null; then
+  "$program" compare fence.json -t beam beam:order=sorted casav acaa:8 msaa:8 --force -o report
+  "$program" report report
+  chromium --headless --no-sandbox --hide-scrollbars --window-size=1440,2480 \
+    --screenshot="$docs/pictures/report.png" "file://$PWD/report/report.html" 2>/dev/null
+fi
 
 # The pipeline: CONTRIBUTING.md.
 "$docs/pipeline_figure.py" "$program" "$docs/pictures/pipeline.svg"
