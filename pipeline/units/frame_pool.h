@@ -15,31 +15,45 @@ namespace beampipe {
 class FramePool {
  public:
   FramePool(std::size_t pixels, std::size_t bytes_per_pixel, std::uint32_t guaranteed_chunks)
-      : free_(pixels * bytes_per_pixel / (kChunkBytes + kFrameChunkLinkBytes) - pixels * guaranteed_chunks) {}
+      : free_(static_cast<std::int64_t>(pixels * bytes_per_pixel / (kChunkBytes + kFrameChunkLinkBytes)) -
+              static_cast<std::int64_t>(pixels * guaranteed_chunks)) {}
 
-  // Of a bin: its claims, and the most chunks that it had beyond those that are guaranteed. Thread-safe.
-  void add(const std::vector<PoolClaim>& claims, std::size_t most) {
+  // All claims of a bin, in the order of triangles. Thread-safe.
+  void add(const std::vector<PoolClaim>& claims) {
     const std::lock_guard lock(mutex_);
     claims_.insert(claims_.end(), claims.begin(), claims.end());
-    most_ += most;
+    most_ += most_of(claims);
   }
 
   // The first triangle for which the pool has too few chunks beyond those that are guaranteed; ~0: there is none. A
   // triangle takes what it needs before it gives back what others had.
   std::uint32_t full_at() {
-    if (most_ <= free_) return ~0u;
+    if (most_ <= free_) return ~0u;  // nor would they be too few if all bins had the most at once
     std::sort(claims_.begin(), claims_.end(), [](const PoolClaim& a, const PoolClaim& b) {
       return a.triangle != b.triangle ? a.triangle < b.triangle : a.chunks > b.chunks;
     });
     std::int64_t claimed = 0;
     for (const PoolClaim& claim : claims_)
-      if ((claimed += claim.chunks) > static_cast<std::int64_t>(free_)) return claim.triangle;
+      if ((claimed += claim.chunks) > free_) return claim.triangle;
     return ~0u;
   }
 
  private:
-  std::size_t free_;  // chunks beyond those that are guaranteed
-  std::size_t most_ = 0;
+  // The most chunks that a bin has at once, where a triangle takes before it gives.
+  static std::int64_t most_of(const std::vector<PoolClaim>& claims) {
+    std::int64_t had = 0, net = 0, taken = 0, most = 0;  // before the triangle, and by it
+    std::uint32_t triangle = 0;
+    for (const PoolClaim& claim : claims) {
+      if (claim.triangle != triangle) had += net, net = taken = 0;
+      triangle = claim.triangle;
+      net += claim.chunks, taken += std::max(claim.chunks, 0);
+      most = std::max(most, had + taken);
+    }
+    return most;
+  }
+
+  std::int64_t free_;  // chunks beyond those that are guaranteed
+  std::int64_t most_ = 0;
   std::mutex mutex_;
   std::vector<PoolClaim> claims_;
 };

@@ -70,7 +70,7 @@ class ComposePooledUnit {
     records_.flush(stage_.counters);
     if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
     if (frame_pool_) {
-      frame_pool_->add(claims_, pixels_.pool.most_beyond_guaranteed());
+      frame_pool_->add(claims_);
     } else {
       report_pool();
     }

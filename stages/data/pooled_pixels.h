@@ -110,7 +110,6 @@ class ChunkPool {
   // A record's chunks become so many. Chunks in memory are the first to be given back.
   void resize(Chunks& of, std::uint32_t count) {
     beyond_guaranteed_ = beyond_guaranteed_ + beyond(count) - beyond(of.count);
-    most_beyond_guaranteed_ = std::max(most_beyond_guaranteed_, beyond_guaranteed_);
     if (count > of.count) {
       const std::size_t wanted = count - of.count, room = on_chip_ - std::min(on_chip_, used_on_chip_);
       const std::size_t taken = std::min(wanted, room);
@@ -136,7 +135,6 @@ class ChunkPool {
 
   std::size_t used() const { return used_on_chip_ + in_memory_; }
   std::size_t beyond_guaranteed() const { return beyond_guaranteed_; }  // chunks of all records
-  std::size_t most_beyond_guaranteed() const { return most_beyond_guaranteed_; }
   std::size_t peak() const { return peak_; }
   std::uint32_t link_bytes() const { return guaranteed_ > 0 ? kFrameChunkLinkBytes : kChunkLinkBytes; }
   std::size_t peak_in_memory() const { return peak_in_memory_; }
@@ -146,7 +144,7 @@ class ChunkPool {
 
   std::size_t on_chip_, used_on_chip_ = 0, in_memory_ = 0;
   std::uint32_t guaranteed_ = 0;
-  std::size_t beyond_guaranteed_ = 0, most_beyond_guaranteed_ = 0;
+  std::size_t beyond_guaranteed_ = 0;
   bool is_closed_ = false;
   std::size_t taken_since_collection_ = 0, peak_ = 0, peak_in_memory_ = 0;
 };

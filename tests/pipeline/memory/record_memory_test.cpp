@@ -32,11 +32,7 @@ TEST(RecordMemory, RecordsTakeTheChunksThatWereGivenBack) {
 TEST(FramePool, IsFullWhenItHasTooFewChunks) {
   const auto full_at = [](const std::vector<std::vector<PoolClaim>>& of_bins) {
     FramePool pool(2, 2 * (kChunkBytes + kFrameChunkLinkBytes), 1);
-    for (const std::vector<PoolClaim>& claims : of_bins) {
-      std::int32_t chunks = 0, most = 0;
-      for (const PoolClaim& claim : claims) most = std::max(most, chunks += claim.chunks);
-      pool.add(claims, static_cast<std::size_t>(most));
-    }
+    for (const std::vector<PoolClaim>& claims : of_bins) pool.add(claims);
     return pool.full_at();
   };
   EXPECT_EQ(full_at({}), ~0u);
@@ -45,7 +41,11 @@ TEST(FramePool, IsFullWhenItHasTooFewChunks) {
   EXPECT_EQ(full_at({{{5, 1}, {9, 1}}, {{7, 1}}}), 9u) << "whichever bin comes first";
   EXPECT_EQ(full_at({{{7, 1}}, {{5, 1}, {9, 1}}}), 9u);
   EXPECT_EQ(full_at({{{5, 2}, {6, -1}, {7, 1}}}), ~0u);
-  EXPECT_EQ(full_at({{{6, -1}, {6, 1}}, {{5, 2}}}), 6u) << "a triangle takes before it gives";
+  // A triangle takes before it gives, in one bin or in several, and in whatever order it visits its pixels.
+  EXPECT_EQ(full_at({{{5, 2}, {6, -1}, {6, 1}}}), 6u);
+  EXPECT_EQ(full_at({{{5, 1}, {6, -1}, {6, 1}}, {{5, 1}}}), 6u);
+  EXPECT_EQ(full_at({{{5, 1}, {6, -1}}, {{5, 1}, {6, 1}}}), 6u);
+  EXPECT_EQ(full_at({{{5, 1}, {6, 1}, {6, -1}}, {{5, 1}}}), 6u);
 }
 
 // Every pixel is full of triangles that are smaller than it. With the pool closed, the picture is what fewer surfaces a
