@@ -33,7 +33,7 @@ namespace beampipe {
 
 MaskTable::MaskTable(const SamplePattern& pattern) {
   for (int angle = 0; angle < kTableAngles / 2; ++angle) {
-    const double theta = (angle + 0.5) * 2 * std::numbers::pi / kTableAngles;
+    const double theta = angle * 2 * std::numbers::pi / kTableAngles;
     for (int r = 0; r < kTableDistances; ++r) {
       const double distance = ((r + 0.5) / (kTableDistances / 2) - 1) * kHalfDiagonal;
       std::uint32_t word = 0;
@@ -52,8 +52,10 @@ MaskTable::MaskTable(const SamplePattern& pattern) {
 std::int32_t table_angle(double a, double b, bool& flip) {
   flip = b < 0 || (b == 0 && a < 0);
   const double theta = flip ? std::atan2(-b, -a) : std::atan2(b, a);  // 0 <= theta < pi
-  const auto angle = static_cast<std::int32_t>(theta * (kTableAngles / (2 * std::numbers::pi)));
-  return angle < kTableAngles / 2 ? angle : kTableAngles / 2 - 1;
+  const auto angle = static_cast<std::int32_t>(theta * (kTableAngles / (2 * std::numbers::pi)) + 0.5);
+  if (angle < kTableAngles / 2) return angle;
+  flip = !flip;  // pi is the reverse of 0
+  return 0;
 }
 
 HWY_EXPORT(table_masks_kernel);

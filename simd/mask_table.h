@@ -17,8 +17,9 @@ inline constexpr int kTableAngles = 64;     // over the full circle
 inline constexpr int kTableDistances = 64;  // over [-1/sqrt(2), 1/sqrt(2)] px, signed distance from the pixel's centre
 inline constexpr float kHalfDiagonal = 0.70710678f;  // px: beyond it an edge does not cut the pixel
 
-// Entry [theta][r] is the set of samples with n(theta) . (sample - centre) + r >= 0. Entry [theta + pi][-r] is its
-// complement, so every sample is in the mask of either an edge or its reverse.
+// Entry [theta][r] is the set of samples with n(theta) . (sample - centre) + r >= 0, for angles that are multiples of
+// 2 pi / 64, so that upright and level edges are exact but for their distance. Entry [theta + pi][-r] is its complement,
+// so every sample is in the mask of either an edge or its reverse.
 class MaskTable {
  public:
   explicit MaskTable(const SamplePattern& pattern);  // which has 32 samples
@@ -44,7 +45,8 @@ struct TableTriangleOf {
 };
 using TableTriangle = TableTriangleOf<std::int32_t, std::uint32_t, float>;
 
-// The table's angle for an edge with the inward normal (a, b), which are not both 0, and whether the edge is flipped.
+// The table's angle that is nearest to that of an edge with the inward normal (a, b), which are not both 0, and whether
+// the edge is flipped.
 std::int32_t table_angle(double a, double b, bool& flip);
 
 // masks[i] = the samples inside all three edges of triangles[i], by the table. Lanes are across triangles. The same

@@ -58,8 +58,10 @@ LineDirection<Float, Mask> line_direction(Float a, Float b) {
   const Float octant = t * (Float(kTableAngles / 8) + Float(2.781f) * (one - t));
   const Float acute = select(size_b > size_a, right_angle - octant, octant);
   const Float angle = select(is_left != flipped, right_angle + right_angle - acute, acute);
-  const Int row = to_integer(lesser(greater(angle, zero), Float(kTableAngles / 2 - 1)));
-  return {row * Int(kTableDistances), select(flipped, Mask(~0u), Mask(0u)), one / (longer * square_root(one + t * t))};
+  const auto turns = angle >= Float(kTableAngles / 2 - 0.5f);  // pi is the reverse of 0
+  const Int row = to_integer(select(turns, zero, angle + Float(0.5f)));
+  return {row * Int(kTableDistances), select(flipped != turns, Mask(~0u), Mask(0u)),
+          one / (longer * square_root(one + t * t))};
 }
 
 // The positions where a u + b v + c is 0 or more; (a, b) is the direction.
@@ -269,8 +271,9 @@ struct RegionCover {
   Float i, a, open_i, open_a;
 };
 template <class Float>
-RegionCover<Float> region_cover(Float i, Float a) {
+RegionCover<Float> region_cover(Float i, Float a, bool bounded) {
   const Float zero(0.0f), one(1.0f);
+  if (!bounded) return {i, a, one - i, one - a};
   return {i, a, greater(one - i, zero), greater(one - a, zero)};
 }
 
@@ -292,7 +295,11 @@ BlendFactors<Float> blended_in(const RegionCover<Float>& slab, const BlendFactor
   const Float one(1.0f);
   if (fuzzy == MergeRules::Fuzzy::mix)
     return {over.i + (under.i - over.i) * delta, over.a + (under.a - over.a) * delta};
-  const BlendFactors<Float> blended{slab.i * (one - delta), slab.a * delta};
+  BlendFactors<Float> blended{slab.i * (one - delta), slab.a * delta};
+  if (fuzzy == MergeRules::Fuzzy::unite) {
+    const Float scale = (slab.i + slab.a * slab.open_i) / greater(blended.i + blended.a, Float(1e-30f));
+    blended = {blended.i * scale, blended.a * scale};
+  }
   if (how.rule == MergeRules::Overlap::over) return blended;
   // Specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them.
   return {select(how.tiny, over.i, blended.i), select(how.tiny, over.a, blended.a)};
@@ -314,14 +321,14 @@ BlendFactors<Float> visible_parts(const FragmentOf<Float, Mask>& fragment, const
   const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
   const Float in_front = bit_count(parts.front), behind = bit_count(parts.back);
   const Float local_i = local_coverage(in), local_a = local_coverage(old);
-  const bool keep = rules.local == MergeRules::Local::keep;
-  const Float cover_i = keep ? local_i : lesser(local_i, one), cover_a = keep ? local_a : lesser(local_a, one);
+  const bool clamp = rules.local == MergeRules::Local::clamp, bounded = rules.local != MergeRules::Local::printed;
+  const Float cover_i = clamp ? lesser(local_i, one) : local_i, cover_a = clamp ? lesser(local_a, one) : local_a;
   const bool by_share = rules.regional == MergeRules::Regional::area;
-  const RegionCover<Float> local_cover = region_cover(cover_i, cover_a);
+  const RegionCover<Float> local_cover = region_cover(cover_i, cover_a, bounded);
   const auto cover_in = [&](Float count) {
     if (!by_share) return local_cover;
     const Float share = count / bits;
-    return region_cover(cover_i * share, cover_a * share);
+    return region_cover(cover_i * share, cover_a * share, bounded);
   };
   const Correlation<Float, Mask> how{rules.overlap, fragment.tiny != Mask(0u), parts.fuzziness};
   const BlendFactors<Float> over = over_in(cover_in(in_front), how), under = under_in(cover_in(behind), how);
@@ -330,8 +337,11 @@ BlendFactors<Float> visible_parts(const FragmentOf<Float, Mask>& fragment, const
                                                by_share ? under_in(slab, how) : under, parts.delta, how, rules.fuzzy);
   const Float times_over = by_share ? bits : in_front, times_under = by_share ? bits : behind,
               times_fuzzy = by_share ? bits : parts.within;
-  return {(only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits,
-          (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits};
+  const BlendFactors<Float> sums{
+      (only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits,
+      (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits};
+  if (bounded) return sums;
+  return {greater(sums.i, Float(0.0f)), greater(sums.a, Float(0.0f))};
 }
 
 // Both together, without the slab's thickness. Because masks have errors, the sum of the areas may exceed 1; then it is

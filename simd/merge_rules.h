@@ -27,11 +27,13 @@ struct MergeRules {
   enum class Local {
     clamp,  // clamp it to 1 where the surfaces overlap: a position cannot be more than fully covered
     keep,   // keep it, so that a visible surface keeps its area; 1 - alpha' is clamped to 0
+    printed,
   } local = Local::clamp;
 
   // How to blend within the slab.
   enum class Fuzzy {
     delta,  // b_i = alpha'_i (1 - Delta), b_a = alpha'_a Delta: section 2.2
+    unite,
     mix,    // interpolate by Delta from the fragment over to the fragment under the aggregate; loses no area
   } fuzzy = Fuzzy::delta;
 
