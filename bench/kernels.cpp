@@ -110,8 +110,8 @@ void merges_of_fragments(benchmark::State& state) {
   const MergePositions positions(hammersley_pattern());
   MergeRules rules;
   if (state.range(0) != 0)
-    rules = {R::Overlap::transition, R::Regional::local, R::Local::keep,    R::Fuzzy::mix,
-             R::Extents::range,      R::Slab::visible,   R::Plane::visible, R::Thickness::containing};
+    rules = {R::Overlap::transition, R::Regional::local, R::Fuzzy::mix,           R::Extents::range,
+             R::Slab::visible,       R::Plane::visible,  R::Thickness::containing};
   std::mt19937 random(5);
   std::vector<MergeFragment> fragments(kItems);
   for (MergeFragment& fragment : fragments) {

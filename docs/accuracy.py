@@ -31,8 +31,8 @@ POOLED = {f"beam:{options}": [f"beam:{options}{',' if options else ''}pool={pool
 OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:shape=128x3", "acaa:8",
           "dvm", "msaa:8", "msaa:32", "msaa:256"]
 LABELS = {"beam": "right offset -0.6,0.6", "beam:order=stream": "left offset 0.6,0.6"}  # where a line is at the right
-BEST_READING = "casav:mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"
-STEPS = {"1. published pipeline": "casav", "2. its best reading": BEST_READING,
+EXACT_MASKS = "casav:mask=exact,fuzzy=mix"
+STEPS = {"1. published pipeline": "casav", "2. exact masks, both ways within the slab": EXACT_MASKS,
          "3. without an A-buffer": "casav:order=near-first,layers=8",
          "4a. areas conserved, 32 positions": "beam:order=sorted,bits=32",
          "4b. areas conserved, 256 positions": "beam:order=sorted",
@@ -40,10 +40,10 @@ STEPS = {"1. published pipeline": "casav", "2. its best reading": BEST_READING,
             for letter, (bits, spec) in zip("abcd", CAPACITIES.items())}}
 RESULTS = ["beam", "beam:bin=16", "beam:bits=128,pool=30", "beam:order=stream", "casav", "z3:shape=128x3", "acaa:8", "msaa:8", "msaa:256"]
 READINGS = ["casav", *(f"casav:{reading}" for reading in (
-    "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition", "regional=area",
-    "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
+    "reading=literal", "fuzzy=delta", "slab=full", "plane=area", "fuzzy=mix", "mask=exact", "sort=nearest", "tiny=3",
+    "overlap=over", "overlap=add", "overlap=transition", "regional=area", "extents=slab", "thickness=containing",
     "tiny=3,overlap=transition", "storage=text", "order=near-first,layers=1", "order=near-first,layers=8",
-    "order=stream,layers=8")), BEST_READING]
+    "order=stream,layers=8")), EXACT_MASKS]
 BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
         for spec in ("beam", "beam:bits=128,pool=30", "beam:bits=64,pool=24")}
 ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + sum(POOLED.values(), []) + OTHERS + READINGS +

@@ -265,16 +265,16 @@ Float what_is_left(Float cover, Float open, const Correlation<Float, Mask>& how)
   return select(how.tiny, added, independent);
 }
 
-// How much of a region both cover, and what they leave open of it.
+// How much of a region both cover, and what they leave open of it. A surface whose mask is smaller than its area covers
+// more than 1, and leaves less than 0: what it hides beside its positions is taken from the surface behind.
 template <class Float>
 struct RegionCover {
   Float i, a, open_i, open_a;
 };
 template <class Float>
-RegionCover<Float> region_cover(Float i, Float a, bool bounded) {
-  const Float zero(0.0f), one(1.0f);
-  if (!bounded) return {i, a, one - i, one - a};
-  return {i, a, greater(one - i, zero), greater(one - a, zero)};
+RegionCover<Float> region_cover(Float i, Float a) {
+  const Float one(1.0f);
+  return {i, a, one - i, one - a};
 }
 
 // Where the fragment is in front of the aggregate, or behind it.
@@ -297,8 +297,8 @@ BlendFactors<Float> blended_in(const RegionCover<Float>& slab, const BlendFactor
     return {over.i + (under.i - over.i) * delta, over.a + (under.a - over.a) * delta};
   BlendFactors<Float> blended{slab.i * (one - delta), slab.a * delta};
   if (fuzzy == MergeRules::Fuzzy::unite) {
-    const Float scale = (slab.i + slab.a * slab.open_i) / greater(blended.i + blended.a, Float(1e-30f));
-    blended = {blended.i * scale, blended.a * scale};
+    const Float both = slab.i + slab.a * slab.open_i, sum = greater(blended.i + blended.a, Float(1e-30f));
+    blended = {blended.i / sum * both, blended.a / sum * both};
   }
   if (how.rule == MergeRules::Overlap::over) return blended;
   // Specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them.
@@ -316,19 +316,17 @@ Float local_coverage(const AggregateOf<Float, Mask>& surface) {
 template <class Float, class Mask>
 BlendFactors<Float> visible_parts(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
                                   const OverlapParts<Float, Mask>& parts, const MergeRules& rules) {
-  const Float one(1.0f), bits(32.0f);
+  const Float zero(0.0f), bits(32.0f);
   const AggregateOf<Float, Mask>& in = fragment.surface;
   const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
   const Float in_front = bit_count(parts.front), behind = bit_count(parts.back);
   const Float local_i = local_coverage(in), local_a = local_coverage(old);
-  const bool clamp = rules.local == MergeRules::Local::clamp, bounded = rules.local != MergeRules::Local::printed;
-  const Float cover_i = clamp ? lesser(local_i, one) : local_i, cover_a = clamp ? lesser(local_a, one) : local_a;
   const bool by_share = rules.regional == MergeRules::Regional::area;
-  const RegionCover<Float> local_cover = region_cover(cover_i, cover_a, bounded);
+  const RegionCover<Float> local_cover = region_cover(local_i, local_a);
   const auto cover_in = [&](Float count) {
     if (!by_share) return local_cover;
     const Float share = count / bits;
-    return region_cover(cover_i * share, cover_a * share, bounded);
+    return region_cover(local_i * share, local_a * share);
   };
   const Correlation<Float, Mask> how{rules.overlap, fragment.tiny != Mask(0u), parts.fuzziness};
   const BlendFactors<Float> over = over_in(cover_in(in_front), how), under = under_in(cover_in(behind), how);
@@ -340,8 +338,7 @@ BlendFactors<Float> visible_parts(const FragmentOf<Float, Mask>& fragment, const
   const BlendFactors<Float> sums{
       (only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits,
       (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits};
-  if (bounded) return sums;
-  return {greater(sums.i, Float(0.0f)), greater(sums.a, Float(0.0f))};
+  return {greater(sums.i, zero), greater(sums.a, zero)};
 }
 
 // Both together, without the slab's thickness. Because masks have errors, the sum of the areas may exceed 1; then it is
@@ -359,7 +356,7 @@ AggregateOf<Float, Mask> joined(const AggregateOf<Float, Mask>& in, const Aggreg
   for (int c = 0; c < 3; ++c) merged.color[c] = in.color[c] * scale_i + old.color[c] * scale_a;
   const bool by_area = rules.plane == MergeRules::Plane::area;
   const Float part_i = by_area ? in.alpha : weight.i, part_a = by_area ? old.alpha : weight.a;
-  const Float share_i = part_i / (part_i + part_a), share_a = one - share_i;
+  const Float share_i = part_i / greater(part_i + part_a, Float(1e-30f)), share_a = one - share_i;
   merged.plane = {in.plane.z * share_i + old.plane.z * share_a, in.plane.dzdu * share_i + old.plane.dzdu * share_a,
                   in.plane.dzdv * share_i + old.plane.dzdv * share_a};
   merged.thickness = old.thickness;

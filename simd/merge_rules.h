@@ -1,6 +1,6 @@
 // Choices that the published rules for merging (Crassin et al. 2018, section 2, and the slides of the talk) leave open.
-// Each is a policy with a name. The first value is the default; it follows the text of the paper where the text
-// decides.
+// Each is a policy with a name. The first value is the default: of the readings that contradict neither the text nor the
+// slides, the one with the least error.
 #pragma once
 
 namespace beampipe {
@@ -23,19 +23,13 @@ struct MergeRules {
             // there.
   } regional = Regional::local;
 
-  // What to do with a local coverage alpha 32 / |M| above 1, which makes 1 - alpha' negative in the published formulas.
-  enum class Local {
-    clamp,  // clamp it to 1 where the surfaces overlap: a position cannot be more than fully covered
-    keep,   // keep it, so that a visible surface keeps its area; 1 - alpha' is clamped to 0
-    printed,
-  } local = Local::clamp;
-
   // How to blend within the slab.
   enum class Fuzzy {
-    delta,  // b_i = alpha'_i (1 - Delta), b_a = alpha'_a Delta: section 2.2
-    unite,
-    mix,    // interpolate by Delta from the fragment over to the fragment under the aggregate; loses no area
-  } fuzzy = Fuzzy::delta;
+    unite,  // colours by b_i = alpha'_i (1 - Delta), b_a = alpha'_a Delta, as in section 2.2; the region's coverage is
+            // the union of both, alpha'_i + alpha'_a (1 - alpha'_i), as in every other region where they overlap
+    delta,  // b_i + b_a is the region's coverage as well. In the middle of a slab, two halves become a half.
+    mix,    // interpolate by Delta from the fragment over to the fragment under the aggregate: not in the text
+  } fuzzy = Fuzzy::unite;
 
   // Where the slab ends at a position, for the depth partition and for Delta.
   enum class Extents {
@@ -43,17 +37,18 @@ struct MergeRules {
     slab,   // by plane and thickness alone
   } extents = Extents::range;
 
-  // Which part of a fragment extends the slab and its depth range.
+  // Which part of a fragment extends the slab and its depth range, where "the slab extent depends on the maximal
+  // distance from the fragment to the combined plane" (section 2.2).
   enum class Slab {
-    full,     // all of its positions: "the maximal distance from the fragment", section 2.2
     visible,  // positions that are not behind the slab; a fragment that is all behind it changes nothing
-  } slab = Slab::full;
+    full,     // all of its positions, hidden ones too
+  } slab = Slab::visible;
 
   // How to weight the two planes: "a final coverage-weighted blend of the prior planes", section 2.2.
   enum class Plane {
-    area,     // by alpha
-    visible,  // by what is visible of each
-  } plane = Plane::area;
+    visible,  // by the coverage of each after the merge
+    area,     // by alpha before it
+  } plane = Plane::visible;
 
   // How much of the earlier thickness to keep.
   enum class Thickness {

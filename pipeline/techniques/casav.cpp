@@ -27,6 +27,9 @@ enum class Rules {
   over,       // alpha OVER without masks and slabs, to show what those are worth
 };
 
+// Readings of the text where it leaves several choices open at once.
+enum class Reading { best, literal };
+
 enum class CasavOrder { sorted, near_first, stream };
 
 struct CasavOptions {
@@ -34,7 +37,8 @@ struct CasavOptions {
   MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
   SortKey sort = SortKey::centroid;
   int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
-  MergeRules merge{};
+  Reading reading = Reading::best;
+  MergeRules merge{};  // without regard to `reading`
   CasavStorage storage = CasavStorage::slides;
   CasavOrder order = CasavOrder::sorted;
   int layers = 3;  // aggregates of a pixel, without an A-buffer
@@ -173,14 +177,19 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
   });
 }
 
-// Exact masks are compared exactly.
-CasavOptions with_partition(CasavOptions options) {
+// The literal reading sets three of the rules, and exact masks are compared exactly.
+CasavOptions with_rules(CasavOptions options) {
+  if (options.reading == Reading::literal) {
+    options.merge.fuzzy = MergeRules::Fuzzy::delta;
+    options.merge.slab = MergeRules::Slab::full;
+    options.merge.plane = MergeRules::Plane::area;
+  }
   if (options.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
   return options;
 }
 
 FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
-  const CasavOptions options = with_partition(beam);
+  const CasavOptions options = with_rules(beam);
   return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
@@ -204,7 +213,12 @@ Technique make_casav(const CasavOptions& options) {
 // simd/merge_rules.h explains the policies.
 SpecOptions casav_options(CasavOptions& o) {
   using R = MergeRules;
+  const auto of_best_reading = [&o](SpecOption option) {
+    return beside("reading=best", [&o] { return o.reading == Reading::best; }, std::move(option));
+  };
   return {
+      choice("reading", o.reading, {{"best", Reading::best}, {"literal", Reading::literal}},
+             "the best reading of the text, or the literal one: fuzzy=delta, slab=full, plane=area"),
       choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
              "masks from a 64 x 64 table, or from edge tests"),
       beside(
@@ -222,16 +236,16 @@ SpecOptions casav_options(CasavOptions& o) {
              "transition from ADD to OVER"),
       choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
              "coverage of an overlapping region: relative to the region's positions, or its area"),
-      choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}, {"printed", R::Local::printed}},
-             "whether a local coverage above 1 is clamped to 1 or kept"),
-      choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"unite", R::Fuzzy::unite}, {"mix", R::Fuzzy::mix}},
-             "blending within the slab: by the published formulas, or between over and under"),
+      of_best_reading(
+          choice("fuzzy", o.merge.fuzzy, {{"unite", R::Fuzzy::unite}, {"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
+                 "coverage within the slab: the union of both, the sum of the blending factors, or between over and "
+                 "under")),
       choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
              "where the slab ends: at its depth range, or at its thickness alone"),
-      choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
-             "what the slab grows by: the whole fragment, or its visible positions"),
-      choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
-             "how planes are weighted: by coverage, or by what is visible of each"),
+      of_best_reading(choice("slab", o.merge.slab, {{"visible", R::Slab::visible}, {"full", R::Slab::full}},
+                             "what the slab grows by: a fragment's visible positions, or all of it")),
+      of_best_reading(choice("plane", o.merge.plane, {{"visible", R::Plane::visible}, {"area", R::Plane::area}},
+                             "how planes are weighted: by what is visible of each, or by coverage")),
       choice("thickness", o.merge.thickness,
              {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
              "thickness after a merge: the larger one, or one that contains all merged fragments"),
@@ -256,10 +270,11 @@ TechniqueKind casav_kind() {
               "and one aggregate with a depth slab per pixel; the options are other readings of the paper",
           .source = "Crassin et al. 2018",
           .examples = {"casav", "casav:mask=exact", "casav:storage=text",
-                       "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
-                       "slab=visible,plane=visible,thickness=containing",
+                       "casav:reading=literal",
+                       "casav:sort=nearest,tiny=3,overlap=transition,regional=area,fuzzy=mix,extents=slab,slab=full,"
+                       "plane=area,thickness=containing",
                        "casav:order=near-first", "casav:order=stream,layers=2"},
-          .stressed = {"casav", "casav:storage=text", "casav:storage=float32"},
+          .stressed = {"casav", "casav:reading=literal", "casav:storage=text", "casav:storage=float32"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }
 

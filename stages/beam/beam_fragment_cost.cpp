@@ -131,7 +131,7 @@ OperationCounts table_edges_cost() {
       const Counted<double> a = to_double(edge.a), b = to_double(edge.b);
       const bool flip = (b < zero) | ((b == zero) & (a < zero));
       const Counted<double> theta = select(flip, zero - b, b) / select(flip, zero - a, a);  // counts as an arc tangent
-      lesser(converted(theta * one), one);
+      select(converted(theta * one + one) < one, one, zero);  // the nearest angle; half a turn is 0, flipped
       select(flip, one, one) / (square_root(a * a + b * b) * one);
     }
   });

@@ -49,22 +49,22 @@ inline MergeFragment random_fragment(Random& random) {
   return fragment;
 }
 
-// The published rules; the rules that differ from them in one value; and the last value of every policy together.
+// The default rules; the rules that differ from them in one value; and the last value of every policy together.
 inline std::vector<MergeRules> every_merge_rule() {
   using R = MergeRules;
   return {{},
           {.overlap = R::Overlap::over},
           {.overlap = R::Overlap::add},
           {.overlap = R::Overlap::transition},
-          {.local = R::Local::keep},
+          {.fuzzy = R::Fuzzy::delta},
           {.fuzzy = R::Fuzzy::mix},
           {.extents = R::Extents::slab},
-          {.slab = R::Slab::visible},
-          {.plane = R::Plane::visible},
+          {.slab = R::Slab::full},
+          {.plane = R::Plane::area},
           {.thickness = R::Thickness::containing},
           {.regional = R::Regional::area},
-          {R::Overlap::transition, R::Regional::area, R::Local::keep, R::Fuzzy::mix, R::Extents::slab, R::Slab::visible,
-           R::Plane::visible, R::Thickness::containing},
+          {R::Overlap::transition, R::Regional::area, R::Fuzzy::mix, R::Extents::slab, R::Slab::full, R::Plane::area,
+           R::Thickness::containing},
           {.partition = R::Partition::positions},
           {.overlap = R::Overlap::transition, .partition = R::Partition::positions}};
 }

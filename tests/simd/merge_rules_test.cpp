@@ -22,6 +22,9 @@ void expect_shows(const Aggregate& found, double alpha, double red, double green
   EXPECT_NEAR(found.color[1], green, bound);
 }
 
+// Slab and plane as in the literal reading.
+constexpr MergeRules kLiteralSlab{.slab = MergeRules::Slab::full, .plane = MergeRules::Plane::area};
+
 constexpr MergeRules kByPosition{.partition = MergeRules::Partition::positions};
 
 // A slab of this thickness around depth z, whose surfaces lie between z_min and z_max.
@@ -307,9 +310,14 @@ TEST(MergeRules, WithinTheSlabDeltaIsTakenAtTheMeanPosition) {
     const double delta = within > 0 ? depth_in_slab(u_sum / within, v_sum / within) : 0;
     MergeRules rules = kByPosition;
     if (random.one_in(2)) rules.overlap = MergeRules::Overlap::over;
+    const bool unites = random.one_in(2);
+    rules.fuzzy = unites ? MergeRules::Fuzzy::unite : MergeRules::Fuzzy::delta;
     const Aggregate now = merged(in, old, rules);
-    const double red = part_in * (in_front + behind * (1.0 - part_old) + within * (1 - delta));
-    const double green = part_old * (in_front * (1.0 - part_in) + behind + within * delta);
+    const double blends_in = part_in * (1 - delta), blends_old = part_old * delta;
+    const double both = part_in + part_old - double(part_in) * part_old;
+    const double scale = unites && within > 0 ? both / (blends_in + blends_old) : 1;
+    const double red = part_in * (in_front + behind * (1.0 - part_old)) + within * scale * blends_in;
+    const double green = part_old * (in_front * (1.0 - part_in) + behind) + within * scale * blends_old;
     ASSERT_NEAR(now.color[0], red / 32, 2e-6) << i;
     ASSERT_NEAR(now.color[1], green / 32, 2e-6) << i;
   }
@@ -339,7 +347,7 @@ TEST(MergeRules, PlanesAreMeansByArea) {
       of.plane.dzdu = random.real32(-1, 1), of.plane.dzdv = random.real32(-1, 1);
       return of;
     };
-    const Aggregate in = surface(), old = surface(), now = merged(in, old);
+    const Aggregate in = surface(), old = surface(), now = merged(in, old, kLiteralSlab);
     ASSERT_NO_FATAL_FAILURE(expect_mean(now, in, old, double(in.alpha) / (double(in.alpha) + old.alpha))) << i;
   }
 }
@@ -347,10 +355,11 @@ TEST(MergeRules, PlanesAreMeansByArea) {
 // The slab reaches the fragment: at every covered position the fragment is within half the thickness of the new plane.
 TEST(MergeRules, ThicknessReachesTheFragment) {
   Random random(44);
-  const MergeRules containing{.thickness = MergeRules::Thickness::containing};
+  MergeRules containing = kLiteralSlab;
+  containing.thickness = MergeRules::Thickness::containing;
   for (int i = 0; i < 20'000; ++i) {
     const MergeFragment fragments[3] = {random_fragment(random), random_fragment(random), random_fragment(random)};
-    const MergeRules rules = random.one_in(2) ? containing : MergeRules{};
+    const MergeRules rules = random.one_in(2) ? containing : kLiteralSlab;
     const Aggregate old =
         merge_formula(fragments[1], merge_formula(fragments[0], kEmptyAggregate, kPositions, rules), kPositions, rules);
     const Aggregate now = merge_formula(fragments[2], old, kPositions, rules);
@@ -433,24 +442,27 @@ TEST(MergeRules, TransitionTakesTheMeanDistanceOverTheOverlap) {
   }
 }
 
-// An area of 1/16 in one position is twice what the position can hold. `keep` shows all of it, `clamp` half.
-TEST(MergeRules, LocalCoverageAboveOneIsKeptOrClamped) {
+// An area of 1/16 in one position is twice what the position can hold. In front it hides as much as it covers: what
+// the position cannot give, 1 - alpha' = -1, is taken from the positions beside it.
+TEST(MergeRules, LocalCoverageAboveOneConservesArea) {
   const Aggregate front = flat_surface(1.0f / 16, 1u, -0.9f, 1, 0), back = flat_surface(0.5f, 0x0000ffffu, -0.1f, 0, 1);
-  const MergeRules keep{.local = MergeRules::Local::keep};
-  for (const bool front_last : {true, false}) {
-    const Aggregate &in = front_last ? front : back, &old = front_last ? back : front;
-    EXPECT_FLOAT_EQ(merged(in, old).color[0], 1.0f / 32);
-    const Aggregate now = merged(in, old, keep);
-    EXPECT_FLOAT_EQ(now.color[0], 1.0f / 16);
-    EXPECT_FLOAT_EQ(now.color[1], 15.0f / 32);  // the hidden position shows nothing, rather than a negative amount
-  }
+  for (const bool front_last : {true, false})
+    expect_shows(front_last ? merged(front, back) : merged(back, front), 0.5, 2.0 / 32, 14.0 / 32);
 }
 
-// Two coverages of 1/2 in the middle of the slab. The published blend keeps 1/4 of each. `mix` is halfway between 1/2
-// over 1/4 and 1/4 under 1/2.
-TEST(MergeRules, WithinTheSlabAreaIsLostOrMixed) {
+// A speck of 1/4 px in one position, in front of 1/8 px in four: 4 - 8 x 1 is less than nothing.
+TEST(MergeRules, NoSurfaceShowsLessThanNothing) {
+  const Aggregate front = flat_surface(0.25f, 1u, -0.9f, 1, 0), back = flat_surface(0.125f, 0xfu, -0.1f, 0, 1);
+  for (const bool front_last : {true, false})
+    expect_shows(front_last ? merged(front, back) : merged(back, front), 0.25, 0.25, 0);
+}
+
+// Two coverages of 1/2 in the middle of the slab: 3/4 together, half of each. As areas, the blending factors keep 1/4 of
+// each. `mix` is halfway between 1/2 over 1/4 and 1/4 under 1/2.
+TEST(MergeRules, WithinTheSlabCoverageIsTheUnion) {
   const Aggregate old = slab(-0.5f, 0.2f, -0.6f, -0.4f, 0.5f), in = flat_surface(0.5f, kAllBits, -0.5f, 1, 0);
-  EXPECT_NEAR(merged(in, old).alpha, 0.5f, 1e-6);
+  expect_shows(merged(in, old), 0.75, 0.375, 0.375, 1e-6);
+  expect_shows(merged(in, old, {.fuzzy = MergeRules::Fuzzy::delta}), 0.5, 0.25, 0.25, 1e-6);
   expect_shows(merged(in, old, {.fuzzy = MergeRules::Fuzzy::mix}), 0.75, 0.375, 0.375, 1e-6);
 }
 
@@ -465,8 +477,9 @@ TEST(MergeRules, ExtentsAreCutByTheRangeOrNot) {
 
 TEST(MergeRules, WhatIsHiddenLeavesTheSlabAlone) {
   const Aggregate front = flat_surface(1, kAllBits, -0.9f, 0, 1), behind = flat_surface(1, kAllBits, -0.1f, 1, 0);
-  EXPECT_NEAR(merged(behind, front).thickness, 0.8f, 1e-6);  // reaches both surfaces from the mean depth
-  const MergeRules rules{.slab = MergeRules::Slab::visible};
+  // From the mean depth, the slab reaches both surfaces.
+  EXPECT_NEAR(merged(behind, front, kLiteralSlab).thickness, 0.8f, 1e-6);
+  const MergeRules rules{.plane = MergeRules::Plane::area};
   const Aggregate now = merged(behind, front, rules);
   EXPECT_EQ(now.plane.z, front.plane.z);
   EXPECT_EQ(now.thickness, 0.0f);
@@ -477,7 +490,7 @@ TEST(MergeRules, WhatIsHiddenLeavesTheSlabAlone) {
 // A thin fragment crosses a thin aggregate. The slab reaches the fragment at its visible positions and no farther.
 TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
   MergeRules rules = kByPosition;
-  rules.slab = MergeRules::Slab::visible;
+  rules.plane = MergeRules::Plane::area;
   Random random(49);
   int hidden = 0, partly = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -516,15 +529,17 @@ TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
 
 TEST(MergeRules, PlanesAreWeightedByAreaOrByWhatShows) {
   const Aggregate front = flat_surface(1, kAllBits, -0.9f, 0, 1), behind = flat_surface(1, kAllBits, -0.1f, 1, 0);
-  EXPECT_FLOAT_EQ(merged(behind, front).plane.z, -0.5f);
-  EXPECT_FLOAT_EQ(merged(behind, front, {.plane = MergeRules::Plane::visible}).plane.z, -0.9f);
+  EXPECT_FLOAT_EQ(merged(behind, front, kLiteralSlab).plane.z, -0.5f);
+  EXPECT_FLOAT_EQ(merged(front, behind, {.plane = MergeRules::Plane::area}).plane.z, -0.5f);
+  EXPECT_FLOAT_EQ(merged(front, behind).plane.z, -0.9f);
 }
 
 // A thin slab at -0.9 and a second surface at -0.1. The plane moves to -0.5 and must still reach the whole first slab.
 TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
   const Aggregate old = slab(-0.9f, 0.1f, -0.95f, -0.85f), in = flat_surface(1, kAllBits, -0.1f, 1, 0);
-  EXPECT_NEAR(merged(in, old).thickness, 0.8f, 1e-6);
-  const MergeRules containing{.thickness = MergeRules::Thickness::containing};
+  EXPECT_NEAR(merged(in, old, kLiteralSlab).thickness, 0.8f, 1e-6);
+  MergeRules containing = kLiteralSlab;
+  containing.thickness = MergeRules::Thickness::containing;
   EXPECT_NEAR(merged(in, old, containing).thickness, 0.1f + 2 * 0.4f, 1e-6);
 }
 

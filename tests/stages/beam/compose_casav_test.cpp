@@ -6,7 +6,7 @@
 namespace beampipe::compose_casav_test {
 
 constexpr Tile kPixel{0, 0, 1, 1};
-const std::vector<glm::vec3> kRedGreen = {{1, 0, 0}, {0, 1, 0}};
+const std::vector<glm::vec3> kRedGreen = {{1, 0, 0}, {0, 1, 0}}, kRedGreenBlue = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 Aggregate pixel(const SetupTriangles& triangles, MaskSource mask = MaskSource::exact) {
   return beam_pixels(triangles, kRedGreen, kPixel, mask).at(0);
@@ -79,16 +79,50 @@ TEST(Compose, FrontOverBack) {
     }
 }
 
-// If the mask cannot represent the area, the error of the overlap is at most the area of one position.
-TEST(Compose, FrontOverBackWithinOnePosition) {
-  for (std::int32_t x = 1; x < 256; ++x) {
-    SetupTriangles triangles;
-    add_left_of(triangles, x, -0.75f);
-    add_everywhere(triangles, -0.25f);
-    const Aggregate found = pixel(triangles);
-    ASSERT_NEAR(found.color[0], x / 256.0, 1.0 / 32) << x;
-    ASSERT_NEAR(found.color[1], 1 - x / 256.0, 1.0 / 32) << x;
-  }
+// Also where the mask cannot represent the area: what a local coverage above 1 hides is taken from the positions beside
+// it.
+TEST(Compose, FrontOverBackConservesArea) {
+  for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
+    for (std::int32_t x = 1; x < 256; ++x) {
+      SetupTriangles triangles;
+      add_left_of(triangles, x, -0.75f);
+      add_everywhere(triangles, -0.25f);
+      const Aggregate found = pixel(triangles, mask);
+      ASSERT_NEAR(found.color[0], x / 256.0, 1e-6) << x;
+      ASSERT_NEAR(found.color[1], 1 - x / 256.0, 1e-6) << x;
+    }
+}
+
+// A wire before a quad: a sliver that narrows from 56 units at y = -30,000 to 0 at 60,000. Within the pixel its mean
+// width is that at y = 128.
+TEST(Compose, WireBeforeAQuad) {
+  const double area = 56.0 * (60'000 - 128) / 90'000 / 256;
+  for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
+    for (std::int32_t x = 0; x <= 200; x += 5) {
+      SetupTriangles triangles;
+      add_triangle(triangles, {x, -30'000, -0.75f}, {x, 60'000, -0.75f}, {x + 56, -30'000, -0.75f});
+      add_everywhere(triangles, -0.25f);
+      const Aggregate found = pixel(triangles, mask);
+      ASSERT_NEAR(found.color[0], area, 1e-5) << x;
+      ASSERT_NEAR(found.color[1], 1 - area, 1e-5) << x;
+    }
+}
+
+// Two triangles with a common edge close the pixel, whatever the edge's direction, if both have positions: nothing of a
+// quad behind them shines through.
+TEST(Compose, NothingShinesThroughASharedEdge) {
+  for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
+    for (const std::int32_t x : {16, 100, 128, 131, 230})
+      for (const std::int32_t lean : {-9'000, -256, -64, 0, 3, 200, 9'000}) {
+        SetupTriangles triangles;
+        const ScreenPoint low{x - lean, -9'872}, high{x + lean, 10'128};
+        add_triangle(triangles, low, high, {-20'000, 128});
+        add_triangle(triangles, high, low, {20'000, 128});
+        add_everywhere(triangles, -0.25f);
+        const Aggregate found = beam_pixels(triangles, kRedGreenBlue, kPixel, mask).at(0);
+        ASSERT_NEAR(found.color[0] + found.color[1], 1.0, 1e-6) << x << ", " << lean;
+        ASSERT_NEAR(found.color[2], 0.0, 1e-6) << x << ", " << lean;
+      }
 }
 
 TEST(Compose, EqualDepthKeepsTheEarlier) {
@@ -135,14 +169,14 @@ TEST(Compose, FansWithoutTinyTrianglesCloseThePixel) {
   }
 }
 
-// Specks share positions with their neighbours, and the published rules lose coverage there: at worst a third of the
+// Specks share positions with their neighbours, and the published rules lose coverage there: at worst 37 % of the
 // pixel, on average up to a quarter. What is behind shows through. Fewer and larger triangles leak less.
 TEST(Compose, FansOfTinyTrianglesLeak) {
   Random random(143);
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
     for (const std::int32_t per_side : {1, 2, 4, 8, 16, 32, 64}) {
       const FanAlphas found = fan_alphas(random, per_side, true, mask);
-      EXPECT_GT(found.least, per_side == 1 ? 0.93 : 0.65) << 4 * per_side << " triangles";
+      EXPECT_GT(found.least, per_side == 1 ? 0.93 : 0.63) << 4 * per_side << " triangles";
       EXPECT_GT(found.mean, per_side == 1 ? 0.97 : 0.75) << 4 * per_side << " triangles";
     }
 }

@@ -164,9 +164,11 @@ class FragmentTwins : public SceneTwins {
       direction.flip = below || (level && leftwards);
       const Real up = select(direction.flip, zero - b, b), right = select(direction.flip, zero - a, a);
       ++twin_.special;  // the arc tangent
-      const Real theta = real(std::atan2(up.value, right.value)) * Real(32 / std::numbers::pi);
+      const Real theta = real(std::atan2(up.value, right.value)) * Real(32 / std::numbers::pi) + Real(0.5);
       direction.angle = Counted<std::int32_t>(static_cast<std::int32_t>(converted(theta).value), twin_);
-      direction.angle = lesser(direction.angle, Counted<std::int32_t>(31));
+      const bool turns = !(direction.angle < Counted<std::int32_t>(32));  // half a turn: the reverse of 0
+      direction.angle = select(turns, Counted<std::int32_t>(0), direction.angle);
+      direction.flip = direction.flip != turns;
       direction.per_unit = select(direction.flip, real(-1.0), real(1.0)) / (square_root(a * a + b * b) * Real(256.0));
     }
   }
