@@ -18,8 +18,8 @@ inline constexpr int kTableDistances = 64;  // over [-1/sqrt(2), 1/sqrt(2)] px, 
 inline constexpr float kHalfDiagonal = 0.70710678f;  // px: beyond it an edge does not cut the pixel
 
 // Entry [theta][r] is the set of samples with n(theta) . (sample - centre) + r >= 0, for angles that are multiples of
-// 2 pi / 64, so that upright and level edges are exact but for their distance. Entry [theta + pi][-r] is its complement,
-// so every sample is in the mask of either an edge or its reverse.
+// 2 pi / 64, so that upright and level edges are exact but for their distance. Entry [theta + pi][-r] is its
+// complement, so every sample is in the mask of either an edge or its reverse.
 class MaskTable {
  public:
   explicit MaskTable(const SamplePattern& pattern);  // which has 32 samples

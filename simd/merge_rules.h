@@ -1,6 +1,6 @@
 // Choices that the published rules for merging (Crassin et al. 2018, section 2, and the slides of the talk) leave open.
-// Each is a policy with a name. The first value is the default: of the readings that contradict neither the text nor the
-// slides, the one with the least error.
+// Each is a policy with a name. The first value is the default: of the readings that contradict neither the text nor
+// the slides, the one with the least error.
 #pragma once
 
 namespace beampipe {

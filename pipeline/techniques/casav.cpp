@@ -214,7 +214,8 @@ Technique make_casav(const CasavOptions& options) {
 SpecOptions casav_options(CasavOptions& o) {
   using R = MergeRules;
   const auto of_best_reading = [&o](SpecOption option) {
-    return beside("reading=best", [&o] { return o.reading == Reading::best; }, std::move(option));
+    return beside(
+        "reading=best", [&o] { return o.reading == Reading::best; }, std::move(option));
   };
   return {
       choice("reading", o.reading, {{"best", Reading::best}, {"literal", Reading::literal}},
@@ -236,10 +237,10 @@ SpecOptions casav_options(CasavOptions& o) {
              "transition from ADD to OVER"),
       choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
              "coverage of an overlapping region: relative to the region's positions, or its area"),
-      of_best_reading(
-          choice("fuzzy", o.merge.fuzzy, {{"unite", R::Fuzzy::unite}, {"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
-                 "coverage within the slab: the union of both, the sum of the blending factors, or between over and "
-                 "under")),
+      of_best_reading(choice(
+          "fuzzy", o.merge.fuzzy, {{"unite", R::Fuzzy::unite}, {"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
+          "coverage within the slab: the union of both, the sum of the blending factors, or between over and "
+          "under")),
       choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
              "where the slab ends: at its depth range, or at its thickness alone"),
       of_best_reading(choice("slab", o.merge.slab, {{"visible", R::Slab::visible}, {"full", R::Slab::full}},
@@ -269,8 +270,7 @@ TechniqueKind casav_kind() {
               "correlation-aware semi-analytic visibility, the beam pipeline as published: a 32-bit mask from a table, "
               "and one aggregate with a depth slab per pixel; the options are other readings of the paper",
           .source = "Crassin et al. 2018",
-          .examples = {"casav", "casav:mask=exact", "casav:storage=text",
-                       "casav:reading=literal",
+          .examples = {"casav", "casav:mask=exact", "casav:storage=text", "casav:reading=literal",
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,fuzzy=mix,extents=slab,slab=full,"
                        "plane=area,thickness=containing",
                        "casav:order=near-first", "casav:order=stream,layers=2"},

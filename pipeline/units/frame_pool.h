@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "stages/data/pooled_pixels.h"
@@ -14,9 +16,16 @@ namespace beampipe {
 // says no to a bin. When it was full is found afterwards, from what all bins have claimed.
 class FramePool {
  public:
+  // It has no more chunks than numbers can name. Throws std::runtime_error if these are fewer than what is guaranteed.
   FramePool(std::size_t pixels, std::size_t bytes_per_pixel, std::uint32_t guaranteed_chunks)
-      : free_(static_cast<std::int64_t>(pixels * bytes_per_pixel / (kChunkBytes + kFrameChunkLinkBytes)) -
-              static_cast<std::int64_t>(pixels * guaranteed_chunks)) {}
+      : free_(static_cast<std::int64_t>(std::min(pixels * bytes_per_pixel / (kChunkBytes + kFrameChunkLinkBytes),
+                                                 std::size_t{1} << kFrameChunkNumberBits)) -
+              static_cast<std::int64_t>(pixels * guaranteed_chunks)) {
+    if (free_ < 0)
+      throw std::runtime_error("a frame of " + std::to_string(pixels) + " pixels is too large for a pool of " +
+                               std::to_string(1u << kFrameChunkNumberBits) + " chunks, of which every pixel has " +
+                               std::to_string(guaranteed_chunks));
+  }
 
   // All claims of a bin, in the order of triangles. Thread-safe.
   void add(const std::vector<PoolClaim>& claims) {

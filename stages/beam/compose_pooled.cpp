@@ -48,7 +48,7 @@ class PooledComposer {
 
   // `number`: of the fragment's triangle in the list. Whether closed pixels hide the fragment is decided here, although
   // the raster has left out many already: so how far the raster is ahead changes no visibility. It may change when a
-  // collection comes, and with it the rounding of sums. Returns whether the fragment was not hidden.
+  // collection comes, and so the order in which surfaces retire. Returns whether the fragment was not hidden.
   bool add(const Fragment& fragment, std::uint32_t number, ClosedDepth& closed) {
     ++work.fragments;
     at_.number = number;
@@ -225,7 +225,6 @@ class PooledComposer {
     if (from == to) return;
     at_.record.move(from, to);
     at_.own(to, at_.owned(from));
-    ++work.moves;
     work.bytes_read += sizeof(OwnerSlot), work.bytes_written += sizeof(OwnerSlot);
   }
 

@@ -25,7 +25,6 @@ struct PooledWork {
   std::uint64_t masks_tested = 0;                      // states whose positions were intersected with a fragment's mask
   std::uint64_t wins = 0;                              // owners that are farther than a fragment in the whole pixel
   std::uint64_t takes = 0;                             // states that a claim was taken away from
-  std::uint64_t moves = 0;                             // of owners to another slot
   std::uint64_t planes = 0;                            // of owners, computed again
   std::uint64_t contests = 0;                          // owners of positions that a fragment covers
   std::uint64_t planes_compared = 0;                   // at all positions

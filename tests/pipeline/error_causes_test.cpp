@@ -95,12 +95,17 @@ TEST(ErrorCauses, WhatIsNearerButSortedBehindIsOutOfOrder) {
   EXPECT_GT(part(found, "order"), kMostly);
 }
 
-// 97/256 of the pixel corresponds to 12 1/8 positions, but the mask can hold only 12.
+// A red triangle covers the pixel left of x = 48, in units of 1/256 px, which is six columns of positions. In front of
+// it, a sliver reaches from x = 41 to 200, 159/8 positions; its mask has 20, and hides the red one's sixth column with
+// 159/160 of it. So red shows 5 1/160 positions in place of 41/8. What is missing goes to the background, which is
+// visible on the right.
 TEST(ErrorCauses, AnOutlineBetweenPositionsIsTheMasks) {
-  std::vector<PixelSpaceTriangle> triangles = {filling(0.8, 0, kBlue)};
-  triangles.push_back({{{97 / 256.0, -2, 0.2}, {97 / 256.0, 3, 0.2}, {-3, 0.5, 0.2}}, kRed});
+  const double left = 41 / 256.0, width = 159 / 256.0 * 120 / 79.5;  // at y = -40; it is 0 at y = 80
+  const std::vector<PixelSpaceTriangle> triangles = {
+      {{{48 / 256.0, -2, 0.8}, {48 / 256.0, 3, 0.8}, {-3, 0.5, 0.8}}, kRed},
+      {{{left, -40, 0.2}, {left, 80, 0.2}, {left + width, -40, 0.2}}, kBlue}};
   const Explained found = explain("casav:mask=exact", pixel_trace(1, 1, triangles));
-  EXPECT_NEAR(found.error[0], 0.125 / 32 * std::sqrt(2.0 / 3), 0.3e-3);
+  EXPECT_NEAR(found.error[0], (41 / 8.0 - 5 - 1 / 160.0) / 32 * std::sqrt(1.0 / 3), 0.3e-3);
   EXPECT_GT(part(found, "mask"), 0.9);
 }
 

@@ -457,8 +457,8 @@ TEST(MergeRules, NoSurfaceShowsLessThanNothing) {
     expect_shows(front_last ? merged(front, back) : merged(back, front), 0.25, 0.25, 0);
 }
 
-// Two coverages of 1/2 in the middle of the slab: 3/4 together, half of each. As areas, the blending factors keep 1/4 of
-// each. `mix` is halfway between 1/2 over 1/4 and 1/4 under 1/2.
+// Two coverages of 1/2 in the middle of the slab: 3/4 together, half of each. As areas, the blending factors keep 1/4
+// of each. `mix` is halfway between 1/2 over 1/4 and 1/4 under 1/2.
 TEST(MergeRules, WithinTheSlabCoverageIsTheUnion) {
   const Aggregate old = slab(-0.5f, 0.2f, -0.6f, -0.4f, 0.5f), in = flat_surface(0.5f, kAllBits, -0.5f, 1, 0);
   expect_shows(merged(in, old), 0.75, 0.375, 0.375, 1e-6);

@@ -48,6 +48,20 @@ TEST(FramePool, IsFullWhenItHasTooFewChunks) {
   EXPECT_EQ(full_at({{{5, 1}, {6, 1}, {6, -1}}, {{5, 1}}}), 6u);
 }
 
+// Numbers of chunks have 23 bits. Of two chunks a pixel, 1920 x 1080 pixels leave 2^23 - 4,147,200 = 4,241,408; twice
+// as many pixels would need more than there are.
+TEST(FramePool, HasNoMoreChunksThanNumbersCanName) {
+  const auto full_at = [](std::int32_t chunks) {
+    FramePool pool(1920 * 1080, 90, 2);
+    pool.add({{5, chunks}});
+    return pool.full_at();
+  };
+  EXPECT_EQ(full_at(4'241'408), ~0u);
+  EXPECT_EQ(full_at(4'241'409), 5u);
+  EXPECT_NO_THROW(FramePool(1u << 22, 90, 2));
+  EXPECT_THROW(FramePool((1u << 22) + 1, 90, 2), std::runtime_error);
+}
+
 // Every pixel is full of triangles that are smaller than it. With the pool closed, the picture is what fewer surfaces a
 // pixel make of it: no pixel is left out, and the mean colour is that of the triangles.
 TEST(FramePool, AFullPoolIsClosed) {
