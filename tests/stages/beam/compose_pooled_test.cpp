@@ -338,4 +338,27 @@ TEST(ComposePooled, CostsOfSteps) {
   }
 }
 
+// A step that is done costs operations, whichever it is: at least one, and one a position where positions are looked
+// at.
+TEST(PooledCosts, EveryStepIsCharged) {
+  using Work = PooledWork;
+  const auto operations = [](std::uint64_t Work::*step) {
+    Work work;
+    work.*step = 1;
+    StageCounters counters;
+    charge<8>(work, counters);
+    return counters.ops.total();
+  };
+  for (
+      const auto step :
+      {&Work::fragments,   &Work::masks,          &Work::claims,         &Work::masks_tested, &Work::wins,
+       &Work::takes,       &Work::planes,         &Work::contests,       &Work::listed,       &Work::words_scanned,
+       &Work::measured,    &Work::finality_tests, &Work::pairs_compared, &Work::merges,       &Work::fractions,
+       &Work::order_tests, &Work::retirements,    &Work::retired,        &Work::bounds_found, &Work::vertices_bounded,
+       &Work::specks_seen, &Work::specks_added,   &Work::finished,       &Work::limited,      &Work::speck_comparisons})
+    EXPECT_GT(operations(step), 0u);
+  for (const auto step : {&Work::planes_compared, &Work::farthest_found}) EXPECT_GT(operations(step), 256u);
+  EXPECT_GT(operations(&Work::bounds_found), 1u) << "the bounds, and which one is farther";
+}
+
 }  // namespace beampipe::compose_pooled_test
