@@ -98,7 +98,7 @@ enum class ErrorSource {
   counted_positions,       // Technique::counted_positions limits areas and colours
   estimated_areas,         // areas of partly hidden triangles are estimated from mask positions
   independent_fragments,   // OVER: fragments cover a pixel independently of each other
-  published_merges,        // the published rules: local coverage above 1 is lost
+  published_merges,        // the published rules: an area is spread evenly over its mask
   merges_in_fp16,          // of colours: small shares are lost
   merges_of_half_slopes,   // slopes of 16 bits turn equal planes into a slab
   merges_of_layers,        // a few layers per pixel, with slopes of 8 bits

@@ -22,9 +22,9 @@ class FramePool {
                                                  std::size_t{1} << kFrameChunkNumberBits)) -
               static_cast<std::int64_t>(pixels * guaranteed_chunks)) {
     if (free_ < 0)
-      throw std::runtime_error("a frame of " + std::to_string(pixels) + " pixels is too large for a pool of " +
-                               std::to_string(1u << kFrameChunkNumberBits) + " chunks, of which every pixel has " +
-                               std::to_string(guaranteed_chunks));
+      throw std::runtime_error("the frame has " + std::to_string(pixels) + " pixels, more than the " +
+                               std::to_string((1u << kFrameChunkNumberBits) / guaranteed_chunks) +
+                               " whose chunks can be numbered");
   }
 
   // All claims of a bin, in the order of triangles. Thread-safe.

@@ -338,9 +338,8 @@ TEST(ComposePooled, CostsOfSteps) {
   }
 }
 
-// A step that is done costs operations, whichever it is: at least one, and one a position where positions are looked
-// at.
-TEST(PooledCosts, EveryStepIsCharged) {
+// Whatever is done costs operations: more than one a position where positions are looked at.
+TEST(ComposePooled, EveryStepIsCharged) {
   using Work = PooledWork;
   const auto operations = [](std::uint64_t Work::*step) {
     Work work;
@@ -349,14 +348,13 @@ TEST(PooledCosts, EveryStepIsCharged) {
     charge<8>(work, counters);
     return counters.ops.total();
   };
-  for (
-      const auto step :
-      {&Work::fragments,   &Work::masks,          &Work::claims,         &Work::masks_tested, &Work::wins,
-       &Work::takes,       &Work::planes,         &Work::contests,       &Work::listed,       &Work::words_scanned,
-       &Work::measured,    &Work::finality_tests, &Work::pairs_compared, &Work::merges,       &Work::fractions,
-       &Work::order_tests, &Work::retirements,    &Work::retired,        &Work::bounds_found, &Work::vertices_bounded,
-       &Work::specks_seen, &Work::specks_added,   &Work::finished,       &Work::limited,      &Work::speck_comparisons})
-    EXPECT_GT(operations(step), 0u);
+  constexpr std::uint64_t Work::*kSteps[] = {
+      &Work::fragments,   &Work::masks,          &Work::claims,         &Work::masks_tested, &Work::wins,
+      &Work::takes,       &Work::planes,         &Work::contests,       &Work::listed,       &Work::words_scanned,
+      &Work::measured,    &Work::finality_tests, &Work::pairs_compared, &Work::merges,       &Work::fractions,
+      &Work::order_tests, &Work::retirements,    &Work::retired,        &Work::bounds_found, &Work::vertices_bounded,
+      &Work::specks_seen, &Work::specks_added,   &Work::finished,       &Work::limited,      &Work::speck_comparisons};
+  for (const auto step : kSteps) EXPECT_GT(operations(step), 0u);
   for (const auto step : {&Work::planes_compared, &Work::farthest_found}) EXPECT_GT(operations(step), 256u);
   EXPECT_GT(operations(&Work::bounds_found), 1u) << "the bounds, and which one is farther";
 }
