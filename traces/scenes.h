@@ -1,4 +1,5 @@
-// Procedural scenes: traces with one frame each, made from a triangle budget and a seed.
+// Procedural scenes: traces with one frame each, made from a triangle budget and a seed. Like an engine, they do not
+// draw the back faces of closed meshes.
 #pragma once
 
 #include <cstdint>

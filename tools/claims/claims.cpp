@@ -39,9 +39,14 @@ Claim make_claim(const PublishedFigure& figure, std::optional<double> ours, cons
 
 }  // namespace
 
-std::optional<double> Claim::difference() const {
+std::optional<double> Claim::per_cent() const {
   if (!ours) return {};
-  return *ours - std::clamp(*ours, published_low, published_high);
+  const double nearest = std::clamp(*ours, published_low, published_high), difference = *ours - nearest;
+  return difference == 0 ? 0 : 100 * difference / std::abs(nearest);
+}
+
+std::optional<bool> Claim::holds() const {
+  return ours ? std::optional<bool>(std::abs(*per_cent()) <= kHoldsWithin) : std::nullopt;
 }
 
 std::vector<Claim> all_claims(const Report& report) {
@@ -90,6 +95,10 @@ Form<Claim> claim_form() {
   const Form<double> or_null = {{{"type", Json::array({"number", "null"})}}, {}, [](const double& value) {
                                   return std::isfinite(value) ? Json(value) : Json();
                                 }};
+  const Form<std::optional<bool>> true_or_null = {
+      {{"type", Json::array({"boolean", "null"})}}, {}, [](const std::optional<bool>& value) {
+        return value ? Json(*value) : Json();
+      }};
   const auto number = [](const std::optional<double>& value) { return value.value_or(NAN); };
   return ObjectForm<Claim>()
       .written("name", &Claim::name, form::text(), "What a publication says.")
@@ -100,8 +109,9 @@ Form<Claim> claim_form() {
       .written(
           "ours", [number](const Claim& claim) { return number(claim.ours); }, or_null, "Our number.")
       .written(
-          "difference", [number](const Claim& claim) { return number(claim.difference()); }, or_null,
-          "Ours minus the nearer end of the published range; 0 within it.")
+          "per_cent", [number](const Claim& claim) { return number(claim.per_cent()); }, or_null,
+          "How far ours lies from the nearer end of the published range, of which this is a percentage; 0 within it.")
+      .written("holds", &Claim::holds, true_or_null, "Is that at most 10 per cent either way?")
       .written(
           "kind", [](const Claim& claim) { return claim.by_definition ? kByDefinition : kRendered; },
           form::one_of({kRendered, kByDefinition}), "How our number was found.")

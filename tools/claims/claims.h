@@ -10,6 +10,8 @@
 
 namespace beampipe {
 
+inline constexpr double kHoldsWithin = 10;  // per cent
+
 struct Claim {
   std::string name, unit;
   double published_low = 0, published_high = 0;  // the same if one number is published; high is infinity for "or more"
@@ -21,8 +23,12 @@ struct Claim {
   std::string numerator = {},
               denominator = {};  // our number is the quotient of these claims' numbers; empty: it is not
 
-  // Our number minus the nearer end of the published range; 0 within the range, empty without a number of ours.
-  std::optional<double> difference() const;
+  // How far our number lies from the nearer end of the published range, as a percentage of that end: 0 within the
+  // range, infinite if the end is 0, empty without a number of ours.
+  std::optional<double> per_cent() const;
+
+  // Whether that is at most kHoldsWithin per cent either way; empty without a number of ours.
+  std::optional<bool> holds() const;
 };
 
 // All claims, with the numbers that the last frames of the report give. A claim that needs rendering has a number only

@@ -82,17 +82,17 @@ Ours ms(const std::string& spec, const std::vector<Stage>& stages = {}) {
   return [=](const Findings& found) { return milliseconds(found, spec, stages); };
 }
 
-Ours ms_over_beam(const std::string& spec) {
+Ours ms_over_casav(const std::string& spec) {
   return [=](const Findings& found) { return quotient(milliseconds(found, spec), milliseconds(found, "casav")); };
 }
 
-Number emr_of_beam(const Findings& found) {
+Number emr_of_casav(const Findings& found) {
   for (const TechniqueReport& result : found.report.results)
     if (result.technique == "casav" && result.equivalent_msaa) return result.equivalent_msaa->samples;
   return {};
 }
 
-Number most_fragments_of_beam(const Findings& found) {
+Number most_fragments_of_casav(const Findings& found) {
   const FrameReport* const frame = frame_of(found, "casav");
   if (!frame || !frame->pixel_counters.contains("fragments")) return {};
   return frame->pixel_counters.at("fragments").max;
@@ -232,23 +232,23 @@ Number dvm_less_visibility(const Findings& found) {
 
 std::vector<Formula> our_formulas() {
   std::vector<Formula> formulas = {
-      {"beam.bytes.coverage", constant(bytes_of("casav", "coverage"))},
-      {"beam.bytes.mask", constant(bytes_of("casav", "mask"))},
-      {"beam.bytes.depth_plane", constant(bytes_of("casav", "depth_plane"))},
-      {"beam.bytes.thickness", constant(bytes_of("casav", "thickness"))},
-      {"beam.bytes.depth_range", constant(bytes_of("casav", "depth_range"))},
-      {"beam.bytes.color", constant(bytes_of("casav", "color"))},
-      {"beam.bytes.without_color", constant(bytes_without_color("casav"))},
-      {"beam.bytes", constant(bytes_of("casav"))},
-      {"beam.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
-      {"beam.bytes_over_msaa_8", constant(bytes_of("casav") / bytes_of("msaa:8"))},
+      {"casav.bytes.coverage", constant(bytes_of("casav", "coverage"))},
+      {"casav.bytes.mask", constant(bytes_of("casav", "mask"))},
+      {"casav.bytes.depth_plane", constant(bytes_of("casav", "depth_plane"))},
+      {"casav.bytes.thickness", constant(bytes_of("casav", "thickness"))},
+      {"casav.bytes.depth_range", constant(bytes_of("casav", "depth_range"))},
+      {"casav.bytes.color", constant(bytes_of("casav", "color"))},
+      {"casav.bytes.without_color", constant(bytes_without_color("casav"))},
+      {"casav.bytes", constant(bytes_of("casav"))},
+      {"casav.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
+      {"casav.bytes_over_msaa_8", constant(bytes_of("casav") / bytes_of("msaa:8"))},
       {"msaa_8.bytes.without_color", constant(bytes_without_color("msaa:8"))},
       {"msaa_8.bytes", constant(bytes_of("msaa:8"))},
       {"msaa_32.bytes.without_color", constant(bytes_without_color("msaa:32"))},
       {"msaa_32.bytes", constant(bytes_of("msaa:32"))},
       {"msaa.samples_of_super_resolved_pixel", constant(msaa_sampling(32).pattern.count)},
-      {"beam.mask_bits", constant(8 * bytes_of("casav", "mask"))},
-      {"beam.mask_table_kib", constant(kTableAngles * kTableDistances * 4 / 1024.0)},
+      {"casav.mask_bits", constant(8 * bytes_of("casav", "mask"))},
+      {"casav.mask_table_kib", constant(kTableAngles * kTableDistances * 4 / 1024.0)},
       {"msaa_8.mib_at_4k", constant(mebibytes_at_4k("msaa:8,color=rgba16f"))},
       {"acaa_8.mib_at_4k", constant(mebibytes_at_4k("acaa:8"))},
       {"acaa_8.memory_saved", constant(1 - bytes_of("acaa:8") / bytes_of("msaa:8,color=rgba16f"))},
@@ -281,12 +281,12 @@ std::vector<Formula> our_formulas() {
       {"ms.msaa:32", ms("msaa:32")},
       {"ms.msaa:128", ms("msaa:128")},
       {"ms.msaa:256", ms("msaa:256")},
-      {"ms_over_beam.msaa:32", ms_over_beam("msaa:32")},
-      {"ms_over_beam.msaa:64", ms_over_beam("msaa:64")},
-      {"ms_over_beam.msaa:128", ms_over_beam("msaa:128")},
-      {"ms_over_beam.msaa:256", ms_over_beam("msaa:256")},
-      {"beam.emr", emr_of_beam},
-      {"beam.most_fragments", most_fragments_of_beam},
+      {"ms_over_casav.msaa:32", ms_over_casav("msaa:32")},
+      {"ms_over_casav.msaa:64", ms_over_casav("msaa:64")},
+      {"ms_over_casav.msaa:128", ms_over_casav("msaa:128")},
+      {"ms_over_casav.msaa:256", ms_over_casav("msaa:256")},
+      {"casav.emr", emr_of_casav},
+      {"casav.most_fragments", most_fragments_of_casav},
       {"ms.dvm_less_visibility", dvm_less_visibility},
       {"ms.supersampled.1x", ms("visibility:1", {StageId::shade, StageId::light})},
       {"ms.supersampled.2x", ms("visibility:2", {StageId::shade, StageId::light})},
@@ -296,7 +296,7 @@ std::vector<Formula> our_formulas() {
       {"invocations.msaa:8,prepass", invocations("msaa:8,prepass")},
       {"invocations_over_needed", invocations_over_needed},
       {"triangles_without_center", triangles_without_center},
-      {"beam.bytes_with_a_buffer_over_msaa_8", bytes_with_a_buffer_over_msaa},
+      {"casav.bytes_with_a_buffer_over_msaa_8", bytes_with_a_buffer_over_msaa},
   };
   for (const ArticlePath& path : article_paths()) {
     for (const ArticlePass& pass : path.passes)

@@ -11,6 +11,7 @@
 #include "tools/cli/trace_view.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
+#include "traces/closed_mesh.h"
 #include "traces/closest_name.h"
 #include "traces/files/atomic_file.h"
 #include "traces/files/model_import.h"
@@ -30,7 +31,15 @@ struct MakeArguments {
   std::vector<double> pan;
   bool list = false, binary = false;
   ModelOptions model;
+  std::string cull;
 };
+
+// Of all draws, whose culling nothing else decides.
+void set_culling(const std::string& cull, Trace& trace) {
+  for (Frame& frame : trace.frames)
+    for (Draw& draw : frame.draws)
+      draw.cull = cull == "back" || (cull == "closed" && is_closed(trace.meshes[draw.mesh])) ? Cull::back : Cull::none;
+}
 
 Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
   require_no_model_options(command);
@@ -61,6 +70,8 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
     throw UsageError("--triangles and --seed are for procedural scenes only");
   }
   if (is_model) require_options_of(arguments.scene, command);
+  if (is_model && command.was_given("--cull") && !is_obj_file(arguments.scene))
+    throw UsageError("--cull is for scenes and .obj files only: the materials of a glTF model say it");
   const std::filesystem::path file = arguments.output;
   if (std::error_code none; is_model && std::filesystem::equivalent(file, arguments.scene, none))
     throw UsageError("-o " + arguments.output + " is the model itself");
@@ -74,6 +85,7 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
                                            .count = arguments.frames,
                                            .move = moves})
                          : make_from_scene(arguments, command);
+  if (command.was_given("--cull")) set_culling(arguments.cull, trace);
   const std::optional<Camera> camera = trace.frames.at(0).camera;
   if (!arguments.pan.empty()) {
     pan_picture(trace, arguments.frames, arguments.pan.at(0), arguments.pan.at(1));
@@ -124,6 +136,12 @@ void add_make_command(CommandLine& line, InterruptGate& gate) {
                               "move the picture by X pixels to the right and Y down from each frame to the next")
                          .exactly(2, "X,Y")
                          .excludes(orbit);
+
+  command
+      .add("--cull", arguments->cull,
+           "which back faces are not drawn: none, those of closed meshes, or all (back) (default: closed for scenes, "
+           "none for an .obj)")
+      .one_of({"none", "closed", "back"});
 
   Command scene = command.add_group("Procedural scenes");
   scene

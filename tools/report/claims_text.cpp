@@ -33,17 +33,18 @@ std::string mark_of(const std::string& note, std::vector<std::string>& notes) {
 
 std::string table_of(const std::vector<Claim>& claims) {
   std::vector<std::vector<std::string>> rows = {
-      {"  claim", "published", "ours", "difference", "unit", "notes", "source"}};
+      {"  claim", "published", "ours", "per cent", "holds", "unit", "notes", "source"}};
   std::vector<std::string> notes;
   for (const Claim& claim : claims) {
     std::string marks = mark_of(claim.beside, notes);
-    if (claim.ours && *claim.difference() != 0)
+    if (claim.ours && *claim.per_cent() != 0)
       if (const std::string mark = mark_of(claim.reason.empty() ? "" : "why: " + claim.reason, notes); !mark.empty())
         marks += (marks.empty() ? "" : " ") + mark;
     rows.push_back({"  " + claim.name, published_text(claim), claim.ours ? number(*claim.ours) : "",
-                    claim.ours ? number(*claim.difference()) : "", claim.unit, marks, claim.source});
+                    claim.ours ? number(*claim.per_cent(), 3) : "", claim.ours ? (*claim.holds() ? "yes" : "no") : "",
+                    claim.unit, marks, claim.source});
   }
-  std::string text = align_columns(rows, {0, 4, 5, 6});
+  std::string text = align_columns(rows, {0, 4, 5, 6, 7});
   for (std::size_t i = 0; i < notes.size(); ++i) text += "  (" + std::to_string(i + 1) + ") " + notes[i] + "\n";
   return text;
 }
@@ -53,10 +54,8 @@ std::string table_of(const std::vector<Claim>& claims) {
 std::string claims_text(const std::vector<Claim>& claims) {
   std::vector<Claim> rendered, by_definition;
   for (const Claim& claim : claims) (claim.by_definition ? by_definition : rendered).push_back(claim);
-  const auto numbers = std::count_if(rendered.begin(), rendered.end(), [](const Claim& each) { return each.ours; });
-  const auto without = std::count_if(rendered.begin(), rendered.end(),
-                                     [](const Claim& each) { return each.beside.starts_with("none: "); });
-  const auto left = static_cast<std::ptrdiff_t>(rendered.size()) - numbers - without;
+  const auto numbers = std::ranges::count_if(claims, [](const Claim& each) { return each.ours.has_value(); });
+  const auto holding = std::ranges::count_if(claims, [](const Claim& each) { return each.holds().value_or(false); });
   std::ostringstream text;
   while (!rendered.empty()) {
     const std::string command = rendered.front().command;
@@ -67,10 +66,8 @@ std::string claims_text(const std::vector<Claim>& claims) {
   }
   text << "True by definition: formats and constants, read from the program\n"
        << table_of(by_definition) << '\n'
-       << claims.size() << " rows: " << numbers << " with a number from rendering, " << by_definition.size()
-       << " true by definition, " << without << " without a number";
-  if (left > 0) text << ", " << left << " whose reports were not given";
-  text << ".\n";
+       << "Of " << numbers << " claims with a number of ours, " << holding << " hold within " << kHoldsWithin
+       << " per cent.\n";
   return text.str();
 }
 

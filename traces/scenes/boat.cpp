@@ -48,10 +48,13 @@ void add_hull(MeshBuilder& hull, const BoatLook& look, double budget) {
   hull.surface(2 * n, n, [&](double u, double v) {
     return dvec3(hull_point(u, 1).x, rail_height(u) - 0.25, half_beam(u) * (2 * v - 1) * -0.97);
   });
-  hull.finish = look.house;
-  hull.color = {0.80f, 0.78f, 0.72f};
-  hull.box({-6.0, 1.0, -0.9}, {-3.4, 2.1, 0.9});
-  hull.box({-0.6, 1.0, -0.8}, {1.4, 1.8, 0.8});
+}
+
+void add_houses(MeshBuilder& houses, const BoatLook& look) {
+  houses.finish = look.house;
+  houses.color = {0.80f, 0.78f, 0.72f};
+  houses.box({-6.0, 1.0, -0.9}, {-3.4, 2.1, 0.9});
+  houses.box({-0.6, 1.0, -0.8}, {1.4, 1.8, 0.8});
 }
 
 void add_spar(MeshBuilder& spars, const dvec3& a, const dvec3& b, double radius, double budget) {
@@ -149,7 +152,8 @@ void add_braids(MeshBuilder& ropes, const BoatLook& look, double budget) {
 }
 
 std::vector<Mesh> build(const BoatLook& look, double budget, Random& random) {
-  MeshBuilder sea("sea"), hull("hull"), spars("spars"), rig("rigging"), ropes("ropes");
+  MeshBuilder sea("sea"), hull("hull"), houses("deckhouses"), spars("spars"), sail("sail"), rig("rigging"),
+      ropes("ropes");
   sea.finish = look.sea;
   sea.texture_place = [&](const dvec3& p) { return glm::dvec2(p.x, p.z) / std::max(look.sea.texture_size, 1.0); };
   sea.color = {0.05f, 0.25f, 0.32f};
@@ -160,12 +164,13 @@ std::vector<Mesh> build(const BoatLook& look, double budget, Random& random) {
     return dvec3(x, 0.10 * std::sin(1.1 * x + 0.4 * z + phase) + 0.07 * std::sin(0.6 * x - 1.7 * z), z);
   });
   add_hull(hull, look, 0.16 * budget);
+  add_houses(houses, look);
   add_spars(spars, look, 0.08 * budget);
-  add_sail(spars, look, 0.06 * budget);
+  add_sail(sail, look, 0.06 * budget);
   add_shrouds(rig, look, 0.22 * budget);
   add_lines(rig, look, 0.12 * budget);
   add_braids(ropes, look, 0.24 * budget);
-  return {sea.take(), hull.take(), spars.take(), rig.take(), ropes.take()};
+  return {sea.take(), hull.take(), houses.take(), spars.take(), sail.take(), rig.take(), ropes.take()};
 }
 
 }  // namespace

@@ -86,6 +86,7 @@ void add_strings(MeshBuilder& strings, const ClassroomLook& look, const double (
   }
 }
 
+// Floor and walls, which show their fronts inside.
 void add_room(MeshBuilder& room, const ClassroomLook& look, double budget, Random& random) {
   room.finish = look.floor;
   const auto [w, h, d] = std::tuple(kRoom.x, kRoom.y, kRoom.z);
@@ -113,20 +114,23 @@ void add_room(MeshBuilder& room, const ClassroomLook& look, double budget, Rando
     z = window[1];
   }
   wall(kSill, kLintel, z, d);
+}
 
-  room.finish = look.paint;
-  room.color = {0.90f, 0.88f, 0.84f};
+// Window frames and the blackboard.
+void add_fittings(MeshBuilder& fittings, const ClassroomLook& look) {
+  fittings.finish = look.paint;
+  fittings.color = {0.90f, 0.88f, 0.84f};
   for (const auto& window : kWindows) {
     const double middle = (window[0] + window[1]) / 2;
-    for (double at : {window[0], middle, window[1]}) room.box({-0.08, kSill, at - 0.03}, {0.0, kLintel, at + 0.03});
-    for (double y : {kSill, kLintel}) room.box({-0.08, y - 0.04, window[0]}, {0.03, y + 0.04, window[1]});
+    for (double at : {window[0], middle, window[1]}) fittings.box({-0.08, kSill, at - 0.03}, {0.0, kLintel, at + 0.03});
+    for (double y : {kSill, kLintel}) fittings.box({-0.08, y - 0.04, window[0]}, {0.03, y + 0.04, window[1]});
   }
-  room.finish = look.wood;
-  room.color = kWood;
-  room.box({2.0, 0.85, 0}, {6.4, 2.25, 0.04});
-  room.finish = look.board;
-  room.color = look.is_plain() ? glm::vec3(0.04f, 0.16f, 0.09f) : glm::vec3(1.0f);  // the texture has the colour
-  room.box({2.1, 0.95, 0.04}, {6.3, 2.15, 0.05});
+  fittings.finish = look.wood;
+  fittings.color = kWood;
+  fittings.box({2.0, 0.85, 0}, {6.4, 2.25, 0.04});
+  fittings.finish = look.board;
+  fittings.color = look.is_plain() ? glm::vec3(0.04f, 0.16f, 0.09f) : glm::vec3(1.0f);  // the texture has the colour
+  fittings.box({2.1, 0.95, 0.04}, {6.3, 2.15, 0.05});
 }
 
 void add_teacher_corner(MeshBuilder& mesh, const ClassroomLook& look, double budget, Random& random) {
@@ -157,8 +161,9 @@ std::vector<Mesh> unlit_parts(const ClassroomLook& look) {
 }
 
 std::vector<Mesh> build(const ClassroomLook& look, double budget, Random& random) {
-  MeshBuilder room("room"), desks("desks"), blinds("blinds"), strings("strings");
+  MeshBuilder room("room"), fittings("fittings"), desks("desks"), blinds("blinds"), strings("strings");
   add_room(room, look, 0.1 * budget, random);
+  add_fittings(fittings, look);
   add_teacher_corner(desks, look, 0.05 * budget, random);
   const int count = std::clamp(static_cast<int>(budget / 2000), 2, 12);
   for (int i = 0; i < count; ++i) {
@@ -170,7 +175,7 @@ std::vector<Mesh> build(const ClassroomLook& look, double budget, Random& random
     add_strings(strings, look, window, 0.15 * budget);
   }
   std::vector<Mesh> meshes = unlit_parts(look);
-  for (MeshBuilder* part : {&room, &desks, &blinds, &strings}) meshes.push_back(part->take());
+  for (MeshBuilder* part : {&room, &fittings, &desks, &blinds, &strings}) meshes.push_back(part->take());
   return meshes;
 }
 

@@ -48,9 +48,9 @@ void add_fence(MeshBuilder& mesh, const Fence& fence, double cell) {
 }
 
 std::vector<Mesh> fence_meshes(double budget, Random& random) {
-  MeshBuilder backdrop("backdrop"), fences("fences");
-  backdrop.color = {0.30f, 0.28f, 0.25f};
-  backdrop.quad({-20, 0, 5}, {20, 0, 5}, {20, 0, -20}, {-20, 0, -20});
+  MeshBuilder ground("ground"), backdrop("backdrop"), fences("fences");
+  ground.color = {0.30f, 0.28f, 0.25f};
+  ground.quad({-20, 0, 5}, {20, 0, 5}, {20, 0, -20}, {-20, 0, -20});
   const int rings = divisions(0.005 * budget, 4, 3);
   for (int i = 0; i < 7; ++i) {
     const double x = -5.4 + 1.8 * i, size = random.uniform(0.4, 0.9), z = random.uniform(-9, -7);
@@ -62,13 +62,14 @@ std::vector<Mesh> fence_meshes(double budget, Random& random) {
   double area = 0;
   for (const Fence& fence : kFences) area += fence.width * fence.height;
   // Each cell has 24 triangles: one turn of a wire, which is as high as the cell, has four segments of six triangles.
-  const double left = std::max(0.3 * budget, budget - 900.0 - static_cast<double>(backdrop.triangle_count()));
+  const double left =
+      std::max(0.3 * budget, budget - 900.0 - static_cast<double>(ground.triangle_count() + backdrop.triangle_count()));
   const double cell = std::min(2.0, std::sqrt(24 * area / left));
   for (const Fence& fence : kFences) {
     fences.color = fence.color;
     add_fence(fences, fence, cell);
   }
-  return {backdrop.take(), fences.take()};
+  return {ground.take(), backdrop.take(), fences.take()};
 }
 
 }  // namespace

@@ -192,11 +192,12 @@ void MeshBuilder::box(const dvec3& low, const dvec3& high, int divisions) {
     for (const bool far_side : {false, true}) {
       const int across = far_side ? a : b, up = far_side ? b : a;
       const bool turned = finish.texture_size > 0 && size[up] > size[across];
+      const auto between = [&](int k, double t) { return t == 1 ? high[k] : low[k] + size[k] * t; };
       const auto point = [&](double u, double v) {
         dvec3 p;
         p[axis] = far_side ? high[axis] : low[axis];
-        p[a] = low[a] + size[a] * (far_side ? u : v);
-        p[b] = low[b] + size[b] * (far_side ? v : u);
+        p[a] = between(a, far_side ? u : v);
+        p[b] = between(b, far_side ? v : u);
         return p;
       };
       patch(along(across), along(up), point, false, turned);

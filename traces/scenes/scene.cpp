@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traces/closed_mesh.h"
+
 namespace beampipe {
 
 std::vector<Mesh> build_to_budget(const SceneOptions& options, std::uint32_t default_triangles,
@@ -40,6 +42,7 @@ Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<M
     Draw draw;
     draw.mesh = i;
     draw.shading = Shading::lambert;
+    if (is_closed(meshes[i])) draw.cull = Cull::back;
     frame.draws.push_back(draw);
   }
   trace.meshes = std::move(meshes);

@@ -20,8 +20,8 @@ std::vector<Mesh> build_to_budget(const SceneOptions& options, std::uint32_t def
 
 enum class Shoulder { left, right };
 
-// One frame under a blue sky. Every mesh is drawn once with lambert shading; the light comes over the viewer's
-// shoulder.
+// One frame under a blue sky. Every mesh is drawn once with lambert shading, without the back faces of closed ones; the
+// light comes over the viewer's shoulder.
 Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<Mesh> meshes,
                 Shoulder light_over = Shoulder::left);
 

@@ -8,7 +8,7 @@ class ClaimsCommandTest : public ProgramTest {
  protected:
   // Our number for this claim, as text; empty if there is none.
   std::string ours(const std::vector<std::string>& folders, const std::string& name) {
-    std::vector<std::string> arguments = {"claims", "--json"};
+    std::vector<std::string> arguments = {"claims", "--all", "--json"};
     arguments.insert(arguments.end(), folders.begin(), folders.end());
     const Json claims = parse_json_text(succeed(arguments), "claims");
     for (const Json& claim : claims.elements())

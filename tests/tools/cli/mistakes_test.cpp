@@ -95,6 +95,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"make", path("model.obj"), "--materials", "some", "-o", path("a.json")}, 2, "--materials"},
       {{"make", path("model.obj"), "--animation", "0", "-o", path("a.json")}, 2, "--animation"},
       {{"make", path("model.glb"), "--materials", "all", "-o", path("a.json")}, 2, "--materials"},
+      {{"make", path("model.glb"), "--cull", "back", "-o", path("a.json")}, 2, "--cull"},
       {{"make", path("model.glb"), "--animation", "0", "--orbit", "9", "-o", path("a.json")}, 2, "excludes"},
       {{"make", "fence", "--animation", "0", "-o", path("a.json")}, 2, "--animation"},
       {{"make", "soup", "-o", path("trace.json/a.json")}, 1, "trace.json"},

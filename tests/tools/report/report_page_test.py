@@ -773,7 +773,7 @@ class RunPage(PageTest):
         for row, claim in zip(rows, rendered):
             self.assertIn("ACAA", row["claim"])
             self.assertEqual(float(row["ours"]), claim["ours"])
-            for key in ["unit", "published_low", "published_high", "difference", "source", "beside", "command"]:
+            for key in ["unit", "published_low", "published_high", "per_cent", "source", "beside", "command"]:
                 self.assertEqual(row[key], str(claim[key]) if isinstance(claim[key], str) else row[key])
                 if not isinstance(claim[key], str):
                     self.assertEqual(float(row[key]), claim[key])

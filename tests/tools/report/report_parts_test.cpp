@@ -19,7 +19,7 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
   "hardware": {"name": "Some GPU", "clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
                "implementations": {"shaders": {}}},
   "claims": [{"name": "beam, \"RGB16F\"", "unit": "bytes", "published_low": 36, "published_high": 42, "ours": 42,
-              "difference": 0, "source": "slide 30", "command": "beampipe report DIR"}],
+              "per_cent": 0, "holds": true, "source": "slide 30", "command": "beampipe report DIR"}],
   "msaa_ladder": [{"samples": 1, "rmse": 0.1}, {"samples": 8, "rmse": 0.03}],
   "results": [
    {"technique": "beam", "framebuffer_bytes_per_pixel": 42, "peak_bytes_per_pixel": 49, "a_buffer_peak_bytes": 7,
