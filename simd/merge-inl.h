@@ -163,9 +163,12 @@ inline DepthRegions<Mask> regions_by_positions(const AggregateOf<Float, Mask>& i
 // (2) Partition the overlap by depth: in front of, behind and within the aggregate's slab. Equal depth counts as
 // behind, so that the earlier fragment wins.
 template <class Float, class Mask>
-DepthRegions<Mask> partition(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+DepthRegions<Mask> partition(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
                              const SharedPositions<Mask>& shared, const MergePositions& positions,
                              const MergeRules& rules, MergeStepsOf<Mask>& steps) {
+  if (rules.partition == MergeRules::Partition::given)
+    return {shared.mask & fragment.front, shared.mask & ~fragment.front};
+  const AggregateOf<Float, Mask>& in = fragment.surface;
   const bool ranged = rules.extents == MergeRules::Extents::range;
   const auto meets = shared.any_there;
   const auto never = meets & !meets;
@@ -260,6 +263,7 @@ Float what_is_left(Float cover, Float open, const Correlation<Float, Mask>& how)
     case MergeRules::Overlap::transition:
       return added + (independent - added) * how.fuzziness;
     case MergeRules::Overlap::tiny:
+    case MergeRules::Overlap::unbounded:
       break;
   }
   return select(how.tiny, added, independent);
@@ -280,7 +284,9 @@ RegionCover<Float> region_cover(Float i, Float a) {
 // Where the fragment is in front of the aggregate, or behind it.
 template <class Float, class Mask>
 BlendFactors<Float> over_in(const RegionCover<Float>& region, const Correlation<Float, Mask>& how) {
-  return {region.i, what_is_left(region.a, region.open_i, how)};
+  const Float left = what_is_left(region.a, region.open_i, how);
+  if (how.rule == MergeRules::Overlap::unbounded) return {region.i, select(how.tiny, region.a, left)};
+  return {region.i, left};
 }
 template <class Float, class Mask>
 BlendFactors<Float> under_in(const RegionCover<Float>& region, const Correlation<Float, Mask>& how) {
@@ -440,7 +446,7 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
   BlendFactors<Float> weight{in.alpha, old.alpha};
   DepthRegions<Mask> regions{shared.empty, shared.empty};
   if (any(shared.any_there)) {
-    regions = partition(in, old, shared, positions, rules, steps);
+    regions = partition(fragment, old, shared, positions, rules, steps);
     steps.overlap = overlap;
     const OverlapParts<Float, Mask> parts = overlap_parts(in, old, regions, positions.pattern, rules, steps);
     const BlendFactors<Float> visible = visible_parts(fragment, old, parts, rules);
@@ -449,10 +455,11 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
   AggregateOf<Float, Mask> merged = joined(in, old, weight, rules);
   const bool visible_only = rules.slab == MergeRules::Slab::visible;
   const bool containing = rules.thickness == MergeRules::Thickness::containing;
+  const bool is_thick = rules.thickness != MergeRules::Thickness::none;
   const Mask reached = visible_only ? in.mask & ~regions.back : in.mask;
-  steps.reached = choose(first, none, reached);
+  if (is_thick) steps.reached = choose(first, none, reached);
   if (containing) steps.moved = choose(first, none, old.mask);
-  merged.thickness = merged_thickness(in, old, merged.plane, positions.pattern, containing, steps);
+  if (is_thick) merged.thickness = merged_thickness(in, old, merged.plane, positions.pattern, containing, steps);
   if (visible_only) merged = with_slab_of(reached == none, old, merged);
   return choose_aggregate(first, in, merged);
 }

@@ -39,7 +39,8 @@ inline constexpr Aggregate kEmptyAggregate = {.alpha = 0.0f,
 template <class Float, class Mask>
 struct FragmentOf {
   AggregateOf<Float, Mask> surface;
-  Mask tiny;  // ~0 for a speck, else 0
+  Mask tiny;   // ~0 for a speck, else 0
+  Mask front;  // with Partition::given: the positions at which it is in front of all that was merged before
 };
 using MergeFragment = FragmentOf<float, std::uint32_t>;
 

@@ -11,6 +11,8 @@ struct MergeRules {
     tiny,        // specks lie beside what is there (ADD), all others are independent (OVER): section 2.2.1
     over,        // all are independent: the formulas of section 2.2 alone
     add,         // all lie beside each other as far as there is room: the other end of slide 12's transition
+    unbounded,   // as `tiny`, but what a speck lies beside keeps all of its area, even where both together exceed the
+                 // region: not in the text
     transition,  // slide 12: from ADD to OVER by a fuzziness of |M_A|, alpha_A and "sadp(A, B)", see merge-inl.h
   } overlap = Overlap::tiny;
 
@@ -54,12 +56,14 @@ struct MergeRules {
   enum class Thickness {
     larger,      // all of it, "or the input slab extent, if larger": section 2.2
     containing,  // and twice the distance that the plane moved: "bounds containing all merged primitives", figure 2
+    none,        // a slab is no thicker than its plane: not in the text
   } thickness = Thickness::larger;
 
   // How to find the positions that lie in front of the slab and behind it.
   enum class Partition {
     lines,      // by the lines in which the planes meet, with the table of masks: figure 4
     positions,  // exactly, position by position
+    given,      // by the fragment's `front`: everything else lies behind
   } partition = Partition::lines;
 
   bool operator==(const MergeRules&) const = default;

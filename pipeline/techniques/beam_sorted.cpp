@@ -15,6 +15,7 @@ namespace {
 struct SortedOptions {
   int positions = 256;  // of the mask; together with `storage` one of BEAMPIPE_STORED_AGGREGATES
   Storage storage = Storage::packed;
+  std::size_t window = kAnyNumber;  // most pairs in a window
 };
 
 Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
@@ -45,7 +46,7 @@ FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
     std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
 
     const std::vector<Pair>& pairs = raster();
-    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)));
+    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)), sorted.window);
     while (windows.next([&](std::uint32_t pixel) { return compose.is_open(pixel); })) {
       std::vector<Fragment>& fragments = make_fragments.fetched(windows.pairs, "window_fragments");
       shade.visible(fragments);
@@ -73,7 +74,7 @@ TechniqueKind beam_sorted_kind() {
               "an A-buffer sorts the triangles of a pixel by depth; their fragments are composed near to far into one "
               "aggregate that conserves area, until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
-          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32"},
+          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,window=one"},
           .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
           .make = make_from(
               SortedOptions{},
@@ -82,7 +83,9 @@ TechniqueKind beam_sorted_kind() {
                         beside(
                             "bits=256", [&o] { return o.positions == 256; },
                             choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
-                                   "format of the aggregate's colour: fp16, or float32"))};
+                                   "format of the aggregate's colour: fp16, or float32")),
+                        choice("window", o.window, {{"run", kAnyNumber}, {"one", 1}},
+                               "what is composed at once: a run of triangles whose depths overlap, or one triangle")};
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),

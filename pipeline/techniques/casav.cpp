@@ -30,11 +30,18 @@ enum class Rules {
 // Readings of the text where it leaves several choices open at once.
 enum class Reading { best, literal };
 
+// What fragments are compared with.
+enum class Depths {
+  slab,       // the aggregate's slab
+  positions,  // the nearest depth at each position, which is kept while a pixel's list is merged: not in the text
+};
+
 enum class CasavOrder { sorted, near_first, stream };
 
 struct CasavOptions {
   Rules rules = Rules::published;
   MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
+  Depths depths = Depths::slab;
   SortKey sort = SortKey::centroid;
   int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
   Reading reading = Reading::best;
@@ -177,7 +184,7 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
   });
 }
 
-// The literal reading sets three of the rules, and exact masks are compared exactly.
+// The literal reading sets three of the rules, exact masks are compared exactly, and so are kept depths.
 CasavOptions with_rules(CasavOptions options) {
   if (options.reading == Reading::literal) {
     options.merge.fuzzy = MergeRules::Fuzzy::delta;
@@ -185,6 +192,7 @@ CasavOptions with_rules(CasavOptions options) {
     options.merge.plane = MergeRules::Plane::area;
   }
   if (options.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
+  if (options.depths == Depths::positions) options.merge.partition = MergeRules::Partition::given;
   return options;
 }
 
@@ -224,6 +232,10 @@ SpecOptions casav_options(CasavOptions& o) {
              "masks from a 64 x 64 table, or from edge tests"),
       beside(
           "order=sorted", [&o] { return o.order == CasavOrder::sorted; },
+          choice("depths", o.depths, {{"slab", Depths::slab}, {"positions", Depths::positions}},
+                 "what a fragment is compared with: the aggregate's slab, or the nearest depth at each position")),
+      beside(
+          "order=sorted", [&o] { return o.order == CasavOrder::sorted; },
           choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
                  "the fragment's depth that the A-buffer sorts by")),
       choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}},
@@ -232,9 +244,10 @@ SpecOptions casav_options(CasavOptions& o) {
              {{"tiny", R::Overlap::tiny},
               {"over", R::Overlap::over},
               {"add", R::Overlap::add},
+              {"unbounded", R::Overlap::unbounded},
               {"transition", R::Overlap::transition}},
-             "how coverages combine where masks overlap: ADD for small fragments and OVER for others, OVER, ADD, or a "
-             "transition from ADD to OVER"),
+             "how coverages combine where masks overlap: ADD for small fragments and OVER for others, OVER, ADD, as "
+             "tiny with sums that are not bounded by the region, or a transition from ADD to OVER"),
       choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
              "coverage of an overlapping region: relative to the region's positions, or its area"),
       of_best_reading(choice(
@@ -248,8 +261,8 @@ SpecOptions casav_options(CasavOptions& o) {
       of_best_reading(choice("plane", o.merge.plane, {{"visible", R::Plane::visible}, {"area", R::Plane::area}},
                              "how planes are weighted: by what is visible of each, or by coverage")),
       choice("thickness", o.merge.thickness,
-             {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
-             "thickness after a merge: the larger one, or one that contains all merged fragments"),
+             {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}, {"none", R::Thickness::none}},
+             "thickness after a merge: the larger one, one that contains all merged fragments, or none"),
       choice("storage", o.storage,
              {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}, {"float32", CasavStorage::float32}},
              "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
@@ -273,7 +286,8 @@ TechniqueKind casav_kind() {
           .examples = {"casav", "casav:mask=exact", "casav:storage=text", "casav:reading=literal",
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,fuzzy=mix,extents=slab,slab=full,"
                        "plane=area,thickness=containing",
-                       "casav:order=near-first", "casav:order=stream,layers=2"},
+                       "casav:mask=exact,depths=positions,overlap=unbounded,thickness=none", "casav:order=near-first",
+                       "casav:order=stream,layers=2"},
           .stressed = {"casav", "casav:reading=literal", "casav:storage=text", "casav:storage=float32"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }

@@ -9,12 +9,26 @@
 
 namespace beampipe {
 
+// The nearest surface at a position of a fragment: the fragment, if it is in front of what was nearest before it.
+template <class Float>
+struct Nearest {
+  decltype(Float() < Float()) is_fragment;
+  Float depth;
+};
+template <class Float, class Mask>
+Nearest<Float> nearest_with(const AggregateOf<Float, Mask>& fragment, Float u, Float v, Float nearest) {
+  const Float depth = clamped_depth(fragment, u, v);
+  const auto is_fragment = depth < nearest;
+  return {is_fragment, select(is_fragment, depth, nearest)};
+}
+
 // How often each part of merge_formula had work.
 struct MergeWork {
   std::uint64_t merges = 0, merged = 0, overlaps = 0;
   std::uint64_t lines = 0, directions = 0, front_lines = 0, back_lines = 0;
   std::uint64_t fuzzy = 0, fuzzy_positions = 0;
   std::uint64_t tested = 0, shared = 0, reached = 0, moved = 0;  // positions
+  std::uint64_t kept_depths = 0;  // positions of fragments, where the nearest depth is kept
 
   void add(const MergeSteps& steps) {
     const auto positions = [](std::uint32_t mask) { return static_cast<std::uint64_t>(std::popcount(mask)); };
@@ -49,17 +63,18 @@ inline OperationCounts casav_merges_cost(const MergeWork& work, const MergeRules
   const bool ranged = rules.extents == MergeRules::Extents::range;
   const bool visible_only = rules.slab == MergeRules::Slab::visible;
   const bool containing = rules.thickness == MergeRules::Thickness::containing;
+  const bool is_thick = rules.thickness != MergeRules::Thickness::none;
+  const bool given = rules.partition == MergeRules::Partition::given;
   const bool transition = rules.overlap == MergeRules::Overlap::transition;
   charge(work.merges, [](const auto&, const Float&, const Mask& mask) { static_cast<void>(mask == mask); });
   charge(work.merged, [&](const auto& in, const Float& one, const Mask& mask) {
     static_cast<void>((mask & mask & mask) != mask);
-    lesser(one, one);
     joined(in.surface, in.surface, BlendFactors<Float>{one, one}, rules);
-    thick_enough(containing ? one + (one + one) : one, one);
+    if (is_thick) lesser(one, one), thick_enough(containing ? one + (one + one) : one, one);
     if (visible_only) static_cast<void>((mask & ~mask) == mask);
   });
   charge(work.overlaps, [&](const auto& in, const Float& one, const Mask& mask) {
-    if (ranged)
+    if (ranged && !given)
       static_cast<void>(is_before(in.surface, in.surface)), static_cast<void>(is_after(in.surface, in.surface));
     static_cast<void>((mask & mask & ~mask & ~(mask & mask)) != mask);
     select(true, one, one);
@@ -102,12 +117,16 @@ inline OperationCounts casav_merges_cost(const MergeWork& work, const MergeRules
     const Float u(0.0f);
     farther_from(in.surface.plane, depth_at(in.surface.plane, u, u), u, u, one);
   });
+  charge(work.kept_depths, [](const auto& in, const Float& one, const Mask& mask) {
+    const Float u(0.0f);
+    nearest_with(in.surface, u, u, one), mask | mask;
+  });
   total.convert += 2 * packed_numbers(storage) * work.merges;  // to load and to store the aggregate
   return total;
 }
 
 inline std::uint64_t position_tests(const MergeWork& work) {
-  return 32 * (work.front_lines + work.back_lines) + work.tested + work.reached + work.moved;
+  return 32 * (work.front_lines + work.back_lines) + work.tested + work.reached + work.moved + work.kept_depths;
 }
 
 }  // namespace beampipe

@@ -1,6 +1,8 @@
 #include "stages/beam/compose_casav.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
 
 #include "stages/beam/casav_fragment.h"
@@ -27,6 +29,27 @@ void finish_aggregates(const PixelObservers* observers) {
     if (observer) observer->finishes_aggregate();
 }
 
+// Of a pixel while its list is merged: for each position the depth of the nearest surface there. Depths are below 1.
+struct PositionDepths {
+  std::array<float, kMaxMaskSamples> nearest;
+  PositionDepths() { nearest.fill(1.0f); }
+};
+
+// The positions at which the fragment is in front of all surfaces before it.
+std::uint32_t put_in_front(const Aggregate& fragment, const SamplePattern& pattern, PositionDepths& depths,
+                           MergeWork& work) {
+  std::uint32_t front = 0;
+  for (std::uint32_t left = fragment.mask; left != 0; left &= left - 1) {
+    const auto s = static_cast<std::size_t>(std::countr_zero(left));
+    const Nearest<float> now =
+        nearest_with(fragment, position_u(pattern, s), position_v(pattern, s), depths.nearest[s]);
+    depths.nearest[s] = now.depth;
+    if (now.is_fragment) front |= 1u << s;
+    ++work.kept_depths;
+  }
+  return front;
+}
+
 template <class Stored>
 std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                       const CasavMerging& by, MergeWork& work, const PixelObservers* observers) {
@@ -41,6 +64,8 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
   std::vector<Aggregate> merging(pixels);
   std::vector<MergeFragment> arriving(pixels);
   std::vector<MergeSteps> steps(pixels);
+  const bool keeps_depths = by.rules.partition == MergeRules::Partition::given;
+  std::vector<PositionDepths> depths(keeps_depths ? pixels : 0);
   std::size_t active = pixels;
   for (std::uint32_t round = 0;; ++round) {
     while (active > 0 && buffer.record_count(order[active - 1]) <= round) --active;
@@ -48,6 +73,7 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
     for (std::size_t i = 0; i < active; ++i) {
       arriving[i] = merge_fragment(fragments[buffer.records[buffer.first[order[i]] + round]]);
       merging[i] = stored[i];
+      if (keeps_depths) arriving[i].front = put_in_front(arriving[i].surface, by.positions.pattern, depths[i], work);
     }
     const std::vector<Aggregate> before = observers ? merging : std::vector<Aggregate>{};
     merge(arriving.data(), active, by.positions, by.rules, merging.data(), steps.data());

@@ -45,6 +45,7 @@ inline MergeFragment random_fragment(Random& random) {
   s.z_min = std::max(s.plane.z - spread, -1.0f);
   s.z_max = std::min(s.plane.z + spread, 0.0f);
   s.thickness = 0.0f;
+  fragment.front = random.word();
   for (float& c : s.color) c = s.alpha * (random.one_in(4) ? 0.0f : random.real32(0, 3));
   return fragment;
 }
@@ -55,6 +56,7 @@ inline std::vector<MergeRules> every_merge_rule() {
   return {{},
           {.overlap = R::Overlap::over},
           {.overlap = R::Overlap::add},
+          {.overlap = R::Overlap::unbounded},
           {.overlap = R::Overlap::transition},
           {.fuzzy = R::Fuzzy::delta},
           {.fuzzy = R::Fuzzy::mix},
@@ -62,10 +64,12 @@ inline std::vector<MergeRules> every_merge_rule() {
           {.slab = R::Slab::full},
           {.plane = R::Plane::area},
           {.thickness = R::Thickness::containing},
+          {.thickness = R::Thickness::none},
           {.regional = R::Regional::area},
           {R::Overlap::transition, R::Regional::area, R::Fuzzy::mix, R::Extents::slab, R::Slab::full, R::Plane::area,
            R::Thickness::containing},
           {.partition = R::Partition::positions},
+          {.partition = R::Partition::given},
           {.overlap = R::Overlap::transition, .partition = R::Partition::positions}};
 }
 

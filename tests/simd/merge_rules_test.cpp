@@ -9,10 +9,10 @@ const SamplePattern kPattern = hammersley_pattern();
 const MergePositions kPositions(kPattern);
 
 Aggregate merged(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
-  return merge_formula({fragment, 0u}, old, kPositions, rules);
+  return merge_formula({fragment, 0u, 0u}, old, kPositions, rules);
 }
 Aggregate merged_tiny(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
-  return merge_formula({fragment, kAllBits}, old, kPositions, rules);
+  return merge_formula({fragment, kAllBits, 0u}, old, kPositions, rules);
 }
 
 // Of a pixel whose surfaces are red and green.
@@ -247,7 +247,7 @@ TEST(MergeRules, LinesPartPositionsAsTheTableDoes) {
 TEST(MergeRules, EarlyOuts) {
   MergeSteps steps;
   const auto merging = [&](const Aggregate& in, const Aggregate& old) {
-    merge_formula<float, std::uint32_t>({in, 0u}, old, kPositions, MergeRules{}, steps);
+    merge_formula<float, std::uint32_t>({in, 0u, 0u}, old, kPositions, MergeRules{}, steps);
   };
   const Aggregate left = flat_surface(0.5f, 0xffffu, -0.5f, 1);
   merging(left, kEmptyAggregate);
@@ -399,6 +399,33 @@ TEST(MergeRules, OverlapIsIndependentOrBeside) {
   }
 }
 
+// A speck of 1/4 in front of 7/8, or within its slab. Together they exceed the pixel, so the one behind keeps 3/4 of
+// the pixel if sums are bounded. If they are not, both are scaled to 1 in the end: to 2/9 and 7/9. A speck behind finds
+// 1/8.
+TEST(MergeRules, UnboundedSpecksLieBesideAllThatIsThere) {
+  const MergeRules bounded, unbounded{.overlap = MergeRules::Overlap::unbounded};
+  const Aggregate old = flat_surface(0.875f, kAllBits, -0.5f, 0, 1), speck = flat_surface(0.25f, kAllBits, -0.9f, 1, 0);
+  expect_shows(merged_tiny(speck, old, bounded), 1, 0.25, 0.75);
+  expect_shows(merged_tiny(speck, old, unbounded), 1, 2.0 / 9, 7.0 / 9);
+  expect_shows(merged_tiny(flat_surface(0.25f, kAllBits, -0.1f, 1, 0), old, unbounded), 1, 0.125, 0.875);
+  expect_shows(merged(speck, old, unbounded), 0.25 + 0.75 * 0.875, 0.25, 0.75 * 0.875);  // no speck
+}
+
+// Where the fragment is in front is given: at half of the positions, whatever the depths.
+TEST(MergeRules, APartitionMayBeGiven) {
+  const Aggregate old = flat_surface(1, kAllBits, -0.9f, 0, 1);
+  MergeFragment fragment{flat_surface(1, kAllBits, -0.1f, 1, 0), 0u, 0x0f0f0f0fu};
+  const MergeRules given{.partition = MergeRules::Partition::given};
+  expect_shows(merge_formula(fragment, old, kPositions, given), 1, 0.5, 0.5);
+  expect_shows(merge_formula(fragment, old, kPositions, {}), 1, 0, 1);
+}
+
+TEST(MergeRules, ASlabWithoutThicknessStaysSo) {
+  const Aggregate old = flat_surface(0.5f, 0x0000ffffu, -0.9f, 0, 1), in = flat_surface(0.5f, 0xffff0000u, -0.1f, 1, 0);
+  EXPECT_GT(merged(in, old, {}).thickness, 0.5f);
+  EXPECT_EQ(merged(in, old, {.thickness = MergeRules::Thickness::none}).thickness, 0);
+}
+
 // The transition of slide 12. The aggregate leaves half of its mask open, and the distance of the two is all of their
 // depth range: a fuzziness of 1/2 x 1, halfway between 0.75 and 0.625. At the same depth it is ADD.
 TEST(MergeRules, TransitionGoesFromAddToOverWithDistance) {
@@ -545,7 +572,7 @@ TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
 
 // OVER by hand: 1/2, and 1/2 of the 1/4 behind it.
 TEST(MergeRules, PlainOver) {
-  const Aggregate now = over_formula<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u},
+  const Aggregate now = over_formula<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u, 0u},
                                                            flat_surface(0.5f, 1u, -0.9f, 0, 1));
   expect_shows(now, 0.625, 0.125, 0.5);
 }

@@ -125,6 +125,83 @@ TEST(Compose, NothingShinesThroughASharedEdge) {
       }
 }
 
+// 4 x 4 squares that fill the pixel, each halved: 32 triangles, and two positions for each square. Falling diagonals
+// part these two, rising ones do not. The halves that have more positions are drawn first.
+SetupTriangles grid_of_32(bool falling) {
+  SetupTriangles grid, rest;
+  for (std::int32_t y = 0; y < 256; y += 64)
+    for (std::int32_t x = 0; x < 256; x += 64) {
+      const ScreenPoint a{x, y}, b{x + 64, y}, c{x + 64, y + 64}, d{x, y + 64};
+      SetupTriangles first, second;
+      add_triangle(first, falling ? a : b, falling ? b : c, falling ? d : a);
+      add_triangle(second, falling ? b : c, falling ? c : d, falling ? d : a);
+      if (beam_fragments(first, kPixel, MaskSource::exact).list.at(0).tiny) std::swap(first, second);
+      grid.triangles.push_back(first.triangles[0]);
+      rest.triangles.push_back(second.triangles[0]);
+    }
+  for (const SetupTriangle& triangle : rest.triangles) grid.triangles.push_back(triangle);
+  return grid;
+}
+
+TEST(Compose, ThirtyTwoTrianglesWithAPositionEachCloseThePixel) {
+  SetupTriangles triangles = grid_of_32(true);
+  std::vector<glm::vec3> colors(32, glm::vec3(0, 0, 0));
+  for (std::size_t i = 0; i < 32; ++i) colors[i] = {static_cast<float>(i), 1, 0};
+  add_everywhere(triangles, -0.25f);
+  colors.emplace_back(0, 0, 1);
+  const Aggregate found = beam_pixels(triangles, colors, kPixel, MaskSource::exact).at(0);
+  EXPECT_NEAR(found.color[0], 31 * 32 / 2 / 32.0, 1e-4);
+  EXPECT_NEAR(found.color[1], 1, 1e-6);
+  EXPECT_NEAR(found.color[2], 0, 1e-6);
+}
+
+// With rising diagonals every second triangle is a speck, at the same depth as the positions that are there before it,
+// and so behind them. Those hold half of the area. Each speck has 1/32 of the pixel, and finds what one position leaves
+// open: 1/32 of what the whole pixel leaves open. Three tenths of the surface are lost, and show what is behind.
+TEST(Compose, SpecksInAGridOf32LoseThreeTenths) {
+  const std::vector<glm::vec3> white(32, glm::vec3(1.0f));
+  const Aggregate found = beam_pixels(grid_of_32(false), white, kPixel, MaskSource::exact).at(0);
+  EXPECT_NEAR(found.alpha, 1 - std::pow(31.0 / 32, 16) / 2, 1e-5);
+  EXPECT_NEAR(found.alpha, 0.699, 1e-3);
+}
+
+// A slope that cuts a level surface in the middle of the pixel. Position by position it is in front on the left half.
+TEST(Compose, KeptDepthsResolveSurfacesThatCross) {
+  for (const bool slope_first : {true, false}) {
+    SetupTriangles triangles;
+    const auto slope = [](std::int32_t x, std::int32_t y) {
+      return ScreenPoint{x, y, -0.5f + 1e-5f * static_cast<float>(x - 128)};
+    };
+    if (!slope_first) add_everywhere(triangles, -0.5f);
+    add_triangle(triangles, slope(-9'000, -9'000), slope(20'000, -9'000), slope(-9'000, 20'000));
+    if (slope_first) add_everywhere(triangles, -0.5f);
+    const Aggregate found =
+        beam_pixels(triangles, kRedGreen, kPixel, MaskSource::exact, {.partition = MergeRules::Partition::given}).at(0);
+    EXPECT_NEAR(found.alpha, 1, 1e-6);
+    EXPECT_NEAR(found.color[0], 0.5, 1e-6);
+    EXPECT_NEAR(found.color[1], 0.5, 1e-6);
+  }
+}
+
+// A depth is compared at each position of each fragment: 32 of a surface that fills the pixel, 16 of half a pixel.
+TEST(Compose, KeptDepthsAreTestedWhereFragmentsHavePositions) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.75f);
+  add_left_of(triangles, 128, -0.5f);
+  Fragments fragments = beam_fragments(triangles, kPixel, MaskSource::exact);
+  shade(kRedGreen, fragments.list, fragments.counters);
+  const MergePositions positions(hammersley_pattern());
+  const auto tests = [&](MergeRules::Partition partition) {
+    StageCounters counters;
+    const MergeRules rules{
+        .slab = MergeRules::Slab::visible, .thickness = MergeRules::Thickness::none, .partition = partition};
+    compose(fragments.list, sorted(fragments, kPixel.pixels()), {positions, rules}, counters);
+    return counters.position_tests;
+  };
+  EXPECT_EQ(tests(MergeRules::Partition::given), 32u + 16u);
+  EXPECT_EQ(tests(MergeRules::Partition::positions), 0u);  // their depth ranges do not overlap
+}
+
 TEST(Compose, EqualDepthKeepsTheEarlier) {
   SetupTriangles triangles;
   add_everywhere(triangles, -0.5f);
