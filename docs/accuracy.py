@@ -2,9 +2,11 @@
 """Makes the tables and the plot of docs/accuracy.md and docs/findings.md from the table of a sweep.
 
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
-       docs/accuracy.py sizes PROGRAM MODELS -o DIR    two specs in four sizes
+       docs/accuracy.py sizes PROGRAM MODELS -o DIR    some specs in four sizes
+       docs/accuracy.py culling PROGRAM MODELS -o DIR  some specs on the 17 scenes, culled the other way
        docs/accuracy.py results|steps|bins|capacities|pools|readings TABLE
-       docs/accuracy.py density SIZES_TABLE
+       docs/accuracy.py density|losses SIZES_TABLE
+       docs/accuracy.py faces TABLE CULLING_TABLE
        docs/accuracy.py scenes PROGRAM DIR TABLE SIZES_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
@@ -24,6 +26,8 @@ from measure import PROCEDURAL, print_head, print_row
 SCENES = ["casav", "beam", "beam:bits=128,pool=30", "beam:order=stream", "beam:order=sorted"]
 SIZES = ["1280x720", "320x180", "96x54", "32x18"]
 DENSITY = ["beam", "beam:order=sorted"]
+FACES = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "alpha", "z3", "acaa:8", "dvm", "msaa:8",
+         "msaa:256"]
 CAPACITIES = {32: "beam:bits=32,pool=16", 64: "beam:bits=64,pool=24", 128: "beam:bits=128,pool=30", 256: "beam"}
 POOLS = [16, 30, 40, 60, 80, 128]  # the last one has room for nearly all
 POOLED = {f"beam:{options}": [f"beam:{options}{',' if options else ''}pool={pool}" for pool in POOLS]
@@ -32,6 +36,14 @@ OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:s
           "dvm", "msaa:8", "msaa:32", "msaa:256"]
 LABELS = {"beam": "right offset -0.6,0.6", "beam:order=stream": "left offset 0.6,0.6"}  # where a line is at the right
 EXACT_MASKS = "casav:mask=exact,fuzzy=mix"
+LOSSES = {"as published, best reading": "casav", "masks by edge tests": "casav:mask=exact",
+          "specks beside all that is there": "casav:overlap=unbounded",
+          "slabs without thickness": "casav:thickness=none",
+          "the depth of each position, no slab": "casav:depths=positions",
+          "masks, specks and depths together": "casav:mask=exact,overlap=unbounded,depths=positions",
+          "ours, 32 positions, 14 bytes": "beam:order=sorted,bits=32",
+          "ours, 256 positions, one triangle at a time": "beam:order=sorted,window=one",
+          "ours, 256 positions": "beam:order=sorted"}
 STEPS = {"1. published pipeline": "casav", "2. exact masks, both ways within the slab": EXACT_MASKS,
          "3. without an A-buffer": "casav:order=near-first,layers=8",
          "4a. areas conserved, 32 positions": "beam:order=sorted,bits=32",
@@ -46,14 +58,14 @@ READINGS = ["casav", *(f"casav:{reading}" for reading in (
     "order=stream,layers=8")), EXACT_MASKS]
 BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
         for spec in ("beam", "beam:bits=128,pool=30", "beam:bits=64,pool=24")}
-ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + sum(POOLED.values(), []) + OTHERS + READINGS +
+ALL = list(dict.fromkeys(SCENES + FACES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + sum(POOLED.values(), []) + OTHERS + READINGS +
                          sum(BINS.values(), [])))
 
 
-def sweep(program, models, folder, plan):
+def sweep(program, models, folder, plan, other_way=False):
     """Makes the scenes and the plan in the folder, and sweeps. What is finished there is not done again."""
     folder = pathlib.Path(folder)
-    scene_traces.main(program, models, "320", "180", folder / "scenes")
+    scene_traces.main(program, models, "320", "180", folder / "scenes", other_way)
     traces = [f"scenes/{trace.name}" for trace in sorted((folder / "scenes").glob("*.json"))]
     plan = {"beampipe_sweep": 1, "traces": traces, "implementations": ["shaders"], "errors": True} | plan
     (folder / "plan.json").write_text(json.dumps(plan, indent=1) + "\n")
@@ -109,6 +121,28 @@ def print_density(table):
     for spec in DENSITY:
         columns = [table.values("emr", spec, size=size) for size in SIZES]
         print_row(f"`{spec}`", *(f"{rate(mean(column))}, {rate(min(column))}" for column in columns))
+
+
+def print_losses(table):
+    """What each part of the published rules costs, at two sizes."""
+    sizes = SIZES[:2]
+    print_head("in place of what the paper does", "spec", *(f"EMR at {size.replace('x', ' × ')}" for size in sizes))
+    for title, spec in LOSSES.items():
+        columns = [table.values("emr", spec, size=size) for size in sizes]
+        print_row(title, f"`{spec}`", *(f"{rate(mean(column))}, {rate(min(column))}" for column in columns))
+
+
+def print_faces(table, other_way):
+    """EMRs with and without back faces, and how long a frame takes without them, in relation."""
+    print_head("technique", "all faces: EMR, mean", "least", "culled: EMR, mean", "least", "time, culled ÷ all")
+    for spec in FACES:
+        def values(column, culled):
+            return [float((table if (scene in PROCEDURAL) == culled else other_way).row(scene, spec)[column])
+                    for scene in table.scenes]
+        rates = [values("emr", culled) for culled in (False, True)]
+        times = [new / old for new, old in zip(values("modelled_ms", True), values("modelled_ms", False))]
+        print_row(f"`{spec}`", *(rate(summary(column)) for column in rates for summary in (mean, min)),
+                  f"{mean(times):.2f}")
 
 
 def bytes_of(table, spec):
@@ -202,7 +236,8 @@ plot {', '.join(plots)}
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 
-TABLES = {"results": print_results, "steps": print_steps, "density": print_density, "bins": print_bins,
+TABLES = {"losses": print_losses,
+          "results": print_results, "steps": print_steps, "density": print_density, "bins": print_bins,
           "capacities": print_capacities, "pools": print_pools, "readings": lambda table: print_groups(table, READINGS)}
 
 
@@ -211,7 +246,12 @@ def main(arguments):
         case ["sweep", program, models, "-o", folder]:
             sweep(program, models, folder, {"techniques": ALL})
         case ["sizes", program, models, "-o", folder]:
-            sweep(program, models, folder, {"techniques": DENSITY, "sizes": SIZES})
+            specs = list(dict.fromkeys([*DENSITY, *LOSSES.values()]))
+            sweep(program, models, folder, {"techniques": specs, "sizes": SIZES})
+        case ["culling", program, models, "-o", folder]:
+            sweep(program, models, folder, {"techniques": FACES}, other_way=True)
+        case ["faces", table, other_way]:
+            print_faces(Table(table), Table(other_way))
         case ["scenes", program, folder, table, density]:
             print_scenes(program, pathlib.Path(folder) / "scenes", Table(table), Table(density))
         case ["frontier", table, "-o", path]:

@@ -21,6 +21,7 @@ CAMERAS = {  # eye, target, fovy in degrees, near, far; up is y
     "lattice_site": ("18,9,75", "8,18,-20", 40, 1, 500),
     "truck": ("1150,380,1000", "0,10,-560", 36, 50, 8000),
 }
+BOTH_SIDES = ["breakfast_room"]  # triangles of one wall are wound both ways
 
 
 def make_model(program, models, name, trace, *options):
@@ -32,14 +33,16 @@ def make_model(program, models, name, trace, *options):
                      str(fovy), "--near", str(near), "--far", str(far), "--background", "0.25,0.45,0.8", *options)
 
 
-def main(program, models, width, height, folder):
+def main(program, models, width, height, folder, other_way=False):
+    """Culled as `make` does it: back faces of closed meshes, none of models; or the other way: none, all of models."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     size = ("--width", width, "--height", height)
     for name in measure.PROCEDURAL:
-        measure.make(program, name, folder / f"{name}.json", *size)
+        measure.make(program, name, folder / f"{name}.json", *size, *(("--cull", "none") if other_way else ()))
     for name in CAMERAS if models else ():
-        make_model(program, pathlib.Path(models), name, folder / f"{name}.json", *size)
+        culled = ("--cull", "back") if other_way and name not in BOTH_SIDES else ()
+        make_model(program, pathlib.Path(models), name, folder / f"{name}.json", *size, *culled)
 
 
 if __name__ == "__main__":
