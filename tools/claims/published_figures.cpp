@@ -52,13 +52,17 @@ PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   return figure;
 }
 
+void expect_publication(const JsonCursor& publication) {
+  publication.expect_keys({"beampipe_claims", "publication", "groups", "statements"});
+  publication["beampipe_claims"].integer(1, 1);
+}
+
 }  // namespace
 
 std::vector<PublishedFigure> parse_published_figures(const std::string& text, const std::string& file) {
   const Json json = parse_json_text(text, file);
   const JsonCursor publication(json, file);
-  publication.expect_keys({"beampipe_claims", "publication", "groups"});
-  publication["beampipe_claims"].integer(1, 1);
+  expect_publication(publication);
   std::vector<PublishedFigure> figures;
   for (const JsonCursor& group : publication["groups"].elements()) {
     group.expect_keys({"topic", "source", "trace", "unit", "command", "remark", "reason", "claims"});
@@ -70,6 +74,31 @@ std::vector<PublishedFigure> parse_published_figures(const std::string& text, co
     }
   }
   return figures;
+}
+
+std::vector<Statement> parse_published_statements(const std::string& text, const std::string& file) {
+  const Json json = parse_json_text(text, file);
+  const JsonCursor publication(json, file);
+  expect_publication(publication);
+  std::vector<Statement> statements;
+  for (const JsonCursor& statement : publication["statements"].elements()) {
+    statement.expect_keys({"source", "text", "answer"});
+    const std::string answer = statement["answer"].string();
+    if (!answer.starts_with("works: ") && !answer.starts_with("partly: ") && !answer.starts_with("not here: "))
+      statement["answer"].fail("works: ..., partly: ... or not here: ...", answer);
+    statements.push_back(
+        {publication["publication"].string(), statement["source"].string(), statement["text"].string(), answer});
+  }
+  return statements;
+}
+
+std::vector<Statement> published_statements() {
+  std::vector<Statement> all;
+  for (const PublishedText& publication : kPublishedTexts) {
+    const auto statements = parse_published_statements(publication.text, publication.file);
+    all.insert(all.end(), statements.begin(), statements.end());
+  }
+  return all;
 }
 
 std::vector<PublishedFigure> published_figures() {

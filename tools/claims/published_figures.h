@@ -1,12 +1,12 @@
-// What publications state in numbers. These are data: tools/claims/published/*.json, one file per publication, built
-// into the program.
+// What publications state, in numbers and in words. These are data: tools/claims/published/*.json, one file per
+// publication, built into the program.
 //
 // A file holds groups of claims with the same topic and command. A group also has the unit, the source, the remark and
 // the reason of those of its claims that do not have their own. A claim names the formula of our number
 // (tools/claims/our_figures.h), or two other claims whose numbers are divided ("quotient_of"), or, as "no_number", the
 // reason why there is none. Claims of the topic "design" are about formats and constants: our numbers are read from the
 // program and need no rendering. A group of any other topic has the digest of its "trace", the one that its command
-// makes. A test makes these traces and compares the digests.
+// makes. A test makes these traces and compares the digests. "statements" are what the publication says in words.
 #pragma once
 
 #include <string>
@@ -32,7 +32,17 @@ struct PublishedFigure {
 // All that are built in, in the order in which they are listed.
 std::vector<PublishedFigure> published_figures();
 
+// What a publication says in words, and whether it can be had here.
+struct Statement {
+  std::string publication, source;  // the place in the publication
+  std::string text;
+  std::string answer;  // begins with "works: ", "partly: " or "not here: ", and says with what, or why not
+};
+
+std::vector<Statement> published_statements();
+
 // Those of one file. Throws TraceError, one line that names the file and the place in it.
 std::vector<PublishedFigure> parse_published_figures(const std::string& text, const std::string& file);
+std::vector<Statement> parse_published_statements(const std::string& text, const std::string& file);
 
 }  // namespace beampipe

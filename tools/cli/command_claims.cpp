@@ -16,7 +16,7 @@ namespace {
 struct ClaimsArguments {
   std::vector<std::string> folders;
   HardwareOptions hardware;
-  bool json = false, all = false;
+  bool json = false, all = false, statements = false;
 };
 
 // Takes those of our numbers that `claims` lacks.
@@ -26,7 +26,21 @@ void take(const Json& found, std::vector<Claim>& claims) {
       claim.ours = found.at("ours").get<double>();
 }
 
+void print_statements(bool as_json) {
+  const std::vector<Statement> statements = published_statements();
+  if (!as_json) {
+    std::cout << statements_text(statements);
+    return;
+  }
+  Json all = Json::array();
+  for (const Statement& each : statements)
+    all.push_back(
+        {{"publication", each.publication}, {"source", each.source}, {"text", each.text}, {"answer", each.answer}});
+  std::cout << json_text(all);
+}
+
 void print_claims(const ClaimsArguments& arguments) {
+  if (arguments.statements) return print_statements(arguments.json);
   const std::vector<Hardware> all = read_hardware(arguments.hardware);
   if (all.size() > 1) throw UsageError("--hardware " + arguments.hardware.hardware + ": expected one");
   std::vector<Claim> claims = all_claims({});
@@ -63,6 +77,8 @@ void add_claims_command(CommandLine& line) {
               "folders that run or compare wrote; they hold the numbers that need rendering");
   add_hardware_options(command, arguments->hardware, HardwareCount::one);
   command.add_flag("--all", arguments->all, "also list claims for which there is no number of ours");
+  command.add_flag("--statements", arguments->statements,
+                   "list instead what the publications say in words, and whether it can be had here");
   command.add_flag("--json", arguments->json, "print JSON");
   command.footer(
       "Prints a table for each command, with the published number and ours, and by how many per cent ours is off the\n"

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "pipeline/wrapped_text.h"
 #include "tools/report/report_text.h"
 
 namespace beampipe {
@@ -69,6 +70,18 @@ std::string claims_text(const std::vector<Claim>& claims) {
        << "Of " << numbers << " claims with a number of ours, " << holding << " hold within " << kHoldsWithin
        << " per cent.\n";
   return text.str();
+}
+
+std::string statements_text(const std::vector<Statement>& statements) {
+  std::string text, publication;
+  for (const Statement& statement : statements) {
+    if (statement.publication != publication)
+      text += (publication.empty() ? "" : "\n") + wrapped(statement.publication, 100) + "\n";
+    publication = statement.publication;
+    text += wrapped("  " + statement.source + ": " + statement.text, 100, 4) + "\n" +
+            wrapped("    " + statement.answer, 100, 6) + "\n";
+  }
+  return text;
 }
 
 }  // namespace beampipe

@@ -206,9 +206,12 @@ TEST(Compose, EqualDepthKeepsTheEarlier) {
   SetupTriangles triangles;
   add_everywhere(triangles, -0.5f);
   add_everywhere(triangles, -0.5f);
-  const Aggregate found = pixel(triangles);
-  EXPECT_EQ(found.color[0], 1.0f);
-  EXPECT_EQ(found.color[1], 0.0f);
+  for (const auto partition : {MergeRules::Partition::positions, MergeRules::Partition::given}) {
+    const Aggregate found =
+        beam_pixels(triangles, kRedGreen, kPixel, MaskSource::exact, {.partition = partition}).at(0);
+    EXPECT_EQ(found.color[0], 1.0f);
+    EXPECT_EQ(found.color[1], 0.0f);
+  }
 }
 
 struct FanAlphas {

@@ -86,6 +86,25 @@ TEST(PublishedFigures, ErrorsNameThePlace) {
                   .starts_with("book.json: /groups/0/topic: expected one of"));
 }
 
+TEST(PublishedStatements, SayWhetherTheyCanBeHadHere) {
+  const auto file = [](const std::string& answer) {
+    return R"({"beampipe_claims": 1, "publication": "A book", "groups": [],
+               "statements": [{"source": "page 1", "text": "it floats", "answer": ")" +
+           answer + R"("}]})";
+  };
+  const Statement statement = parse_published_statements(file("works: in water"), "book.json").at(0);
+  EXPECT_EQ(statements_text({statement}), "A book\n  page 1: it floats\n    works: in water\n");
+  EXPECT_EQ(message_of<std::exception>([&] { parse_published_statements(file("yes"), "book.json"); }),
+            "book.json: /statements/0/answer: expected works: ..., partly: ... or not here: ..., found yes");
+}
+
+TEST(PublishedStatements, OfAllPublicationsAreAnswered) {
+  std::map<std::string, int> count;
+  for (const Statement& statement : published_statements()) ++count[statement.publication];
+  EXPECT_EQ(count.size(), 3u);
+  for (const auto& [publication, statements] : count) EXPECT_GT(statements, 10) << publication;
+}
+
 TEST(PublishedFigures, ThatNeedRenderingNameTheirTrace) {
   EXPECT_EQ(parse_published_figures(file_with(R"("published": 4, "formula": "f")", "time"), "book.json").front().trace,
             "0123456789abcdef");
