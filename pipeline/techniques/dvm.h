@@ -6,6 +6,7 @@
 #include "pipeline/technique.h"
 #include "stages/samples/materials.h"
 #include "stages/samples/sample_select.h"
+#include "stages/temporal/temporal.h"
 
 namespace beampipe {
 
@@ -13,12 +14,13 @@ namespace beampipe {
 // facets.
 inline constexpr float kStillPixels = 0.05f;
 
+// Clamp::variance
+inline constexpr float kDeviations = 1.0f;
+
 struct DvmOptions {
   float blend = 0.1f;
   MaterialBy material = MaterialBy::color;
+  Clamp clamp = Clamp::rest;
 };
-
-// Technique::working_bytes_per_pixel. A quad has four pixels, and six counters are about quads.
-inline constexpr std::uint32_t kDvmWorkingBytes = kTemporalWorkingBytes + sizeof(SampleQuad) / 4 + 6 * sizeof(float);
 
 }  // namespace beampipe

@@ -151,6 +151,20 @@ TEST_P(TemporalTwins, Contents) {
   EXPECT_EQ(counters.ops, twin_);
 }
 
+TEST_P(TemporalTwins, CameraSpeeds) {
+  StageCounters counters;
+  const std::vector<float> found =
+      camera_speeds(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, counters);
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    const auto depths = surface_.depth.begin() + static_cast<std::ptrdiff_t>(kSamples * i);
+    const float nearest = *std::min_element(depths, depths + kSamples);  // motion() has found it
+    twin_.fetch -= 1;                                                    // there is one matrix for all
+    const Vector moves = moved(looks_.size() - 1, i, nearest);
+    ASSERT_EQ(found[i], nearest_half(converted(square_root(moves.x * moves.x + moves.y * moves.y)).value)) << i;
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
 TEST_P(TemporalTwins, Dilate) {
   const std::int32_t width = tile_.width();
   struct Sample {
@@ -240,12 +254,13 @@ TEST_P(TemporalTwins, Temporal) {
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {  // something else was there, with a lighter colour
     for (int c = 0; c < 4; ++c) history.color[i][c] = HalfBits(0.5f + 0.5f * frame.color[(i * 7) % tile_.pixels()][c]);
     if (i % 5 == 0) history.looks[i] ^= 1;
+    history.deviation.emplace_back(HalfBits(0.01f * static_cast<float>(i % 11)));
   }
-  for (const float still_px : {0.0f, 2.0f}) {
-    const TemporalOptions options{0.1f, still_px};
+  for (const Clamp clamp : {Clamp::whole, Clamp::rest, Clamp::camera, Clamp::variance}) {
+    const TemporalOptions options{0.1f, clamp, 2.0f, 1.5f};
     StageCounters counters;
-    std::vector<glm::vec4> image(tile_.pixels());
-    temporal(frame, options, history, tile_, counters, image);
+    Accumulated found(tile_.pixels(), clamp);
+    temporal(frame, options, history, tile_, counters, found);
     twin_ = {};
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
       const Float one(1.0f), half(0.5f), width(float(frame.width)), height(float(frame.height)), zero(0.0f);
@@ -266,27 +281,35 @@ TEST_P(TemporalTwins, Temporal) {
           texels[t] = static_cast<std::size_t>(row * frame.width + column);
         }
         const Float known = converted(real(frame.known[i]));
-        Float clamped = real(1.0f);
-        if (still_px > 0) {
-          std::size_t nearest = 0;
+        std::size_t nearest = 0;
+        if (clamp == Clamp::rest || clamp == Clamp::variance)
           for (std::size_t t = 1; t < 4; ++t)
             if (weights[t] > weights[nearest]) nearest = t;
-          const bool other = bits(history.looks[texels[nearest]]) != bits(frame.looks[i]), any = known > zero;
-          const Float faded = lesser(converted(real(frame.speeds[i])) / real(still_px), one);
-          clamped = select(other, real(1.0f), select(any, faded, real(0.0f)));
-        }
+        Float clamped = real(1.0f);
+        if (clamp == Clamp::rest || clamp == Clamp::camera)
+          clamped = lesser(converted(real(frame.speeds[i])) / real(options.still_px), one);
+        if (clamp != Clamp::whole) clamped = select(known > zero, clamped, real(0.0f));
+        if (clamp == Clamp::rest)
+          clamped = select(bits(history.looks[texels[nearest]]) != bits(frame.looks[i]), real(1.0f), clamped);
         const Float blend = real(options.blend) * known;
         for (std::size_t c = 0; c < 4; ++c) {
           const auto channel = static_cast<int>(c);
           const auto texel = [&](int t) { return converted(real(history.color[texels[t]][channel])) * weights[t]; };
           const Float old = texel(0) + texel(1) + texel(2) + texel(3);
-          const Float low = converted(real(frame.low[i][channel])), high = converted(real(frame.high[i][channel]));
+          Float low = converted(real(frame.low[i][channel])), high = converted(real(frame.high[i][channel]));
+          if (clamp == Clamp::variance) {
+            const Float past = converted(real(history.deviation[texels[nearest]][channel]));
+            const Float reach = past * real(options.deviations), step = color[c] - old;
+            low = low - reach, high = high + reach;
+            const Float variance = (one - blend) * (past * past + blend * (step * step));
+            ASSERT_EQ(found.deviation[i][channel], float(HalfBits(converted(square_root(variance)).value))) << i;
+          }
           const Float kept = old + (greater(low, lesser(high, old)) - old) * clamped;
           color[c] = kept + (color[c] - kept) * blend;
         }
       }
       for (std::size_t c = 0; c < 4; ++c)
-        ASSERT_EQ(image[i][static_cast<int>(c)], float(HalfBits(converted(color[c]).value))) << i;
+        ASSERT_EQ(found.color[i][static_cast<int>(c)], float(HalfBits(converted(color[c]).value))) << i;
     }
     EXPECT_EQ(counters.ops, twin_);
   }
