@@ -210,7 +210,7 @@ TEST(Temporal, CountsWhatItLooksAt) {
   // The texel with the largest weight, the known part and, for each channel, the deviation from and to fp16, the box's
   // reach and two sides, the step, what is left of the weight, a sum, four products and a root.
   expect_more(Clamp::variance,
-              {.add = 3 + 2 + 4 * (2 + 1 + 1 + 1), .mul_add = 4 * (1 + 4), .special = 4, .convert = 4 * 2}, 8, 2 * 8);
+              {.mul_add = 4 * (1 + 4), .add = 3 + 2 + 4 * (2 + 1 + 1 + 1), .special = 4, .convert = 4 * 2}, 8, 2 * 8);
   counters = {};
   neighborhood_box({0, 0, 2, 1}, counters, fixture.frame);
   EXPECT_EQ(counters.ops, (OperationCounts{.add = 2 * 8, .convert = 2 * (4 + 4 + 8)})) << "each has one neighbour";
