@@ -12,7 +12,7 @@ import tempfile
 
 import measure
 
-TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance"]
+TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance", "dvm:extra=4"]
 FRAMES = 60
 
 

@@ -18,7 +18,7 @@ namespace beampipe {
 namespace {
 
 // Shading samples go to memory, where the next pass reads them.
-Framebuffer dvm_framebuffer(Clamp clamp) {
+Framebuffer dvm_framebuffer(const DvmOptions& options) {
   constexpr bool kOutlivesBin = true;
   Framebuffer framebuffer{.surfaces = {{"depth", "D32F x 8", 8 * kSampleDepthBytes},
                                        {"visibility", "R32UI x 8", 8 * kVisibilityBytes},
@@ -32,23 +32,36 @@ Framebuffer dvm_framebuffer(Clamp clamp) {
   const auto add = [&](const char* name, const char* format, std::uint32_t bytes) {
     framebuffer.surfaces.push_back({name, format, bytes, kOutlivesBin});
   };
-  if (clamp != Clamp::variance) add("speed", "R16F", kSpeedBytes);
-  if (clamp == Clamp::rest) add("look", "R32UI x 2", 2 * kLookBytes);
-  if (clamp == Clamp::variance) add("deviation", "RGBA16F x 2", 2 * kDeviationBytes);
+  if (options.clamp != Clamp::variance) add("speed", "R16F", kSpeedBytes);
+  if (options.clamp == Clamp::rest) add("look", "R32UI x 2", 2 * kLookBytes);
+  if (options.clamp == Clamp::variance) add("deviation", "RGBA16F x 2", 2 * kDeviationBytes);
+  if (options.room > 0)
+    add("extra_samples", "visibility, mask, location, gbuffer, color",
+        options.room * (kShadingSampleBytes + kGBufferBytes + kSampleColorBytes) / 4);
   return framebuffer;
 }
 
-// Counts each shading sample, with its G-buffer and colour, at the pixel of the quad that stores it.
+// Counts each shading sample, with its G-buffer and colour, at the pixel of the quad that stores it; an extra one where
+// it is shaded.
 void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, std::vector<float>& bytes) {
   const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
+  const auto add = [&](std::size_t q, std::size_t p, std::uint32_t triangle) {
+    const std::size_t x = 2 * (q % columns) + p % 2, y = 2 * (q / columns) + p / 2;
+    const bool is_shaded = triangle != kNoTriangle;
+    bytes[y * static_cast<std::size_t>(tile.width()) + x] +=
+        static_cast<float>(kShadingSampleBytes + (is_shaded ? kGBufferBytes + kSampleColorBytes : 0));
+  };
   for (std::size_t q = 0; q < quads.size(); ++q)
-    for (std::size_t p = 0; p < 4; ++p) {
-      if (quads[q].mask[p] == 0) continue;
-      const std::size_t x = 2 * (q % columns) + p % 2, y = 2 * (q / columns) + p / 2;
-      const bool is_shaded = quads[q].triangle[p] != kNoTriangle;
-      bytes[y * static_cast<std::size_t>(tile.width()) + x] +=
-          static_cast<float>(kShadingSampleBytes + (is_shaded ? kGBufferBytes + kSampleColorBytes : 0));
-    }
+    for (std::size_t p = 0; p < 4; ++p)
+      if (quads[q].mask[p] != 0) add(q, p, quads[q].triangle[p]);
+  for (const auto& [q, extra] : extras_of(quads)) add(q, extra->location / 8u, extra->triangle);
+}
+
+// What ends the lists of extra samples that do not fill their room.
+std::uint64_t end_bytes(const std::vector<SampleQuad>& quads, std::uint32_t room) {
+  std::uint64_t bytes = 0;
+  for (const SampleQuad& quad : quads) bytes += quad.extras.size() < room ? kEndOfExtrasBytes : 0;
+  return bytes;
 }
 
 // Sorts the quads' shading samples by material, and shades and lights them one by one.
@@ -122,13 +135,13 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   const Materials materials(material_ids(context.triangles, options.material));
   const std::vector<std::uint32_t> looks = looks_of(frame);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  const SelectOptions select{frames % 8, frames + 1};
+  const SelectOptions select{frames % 8, frames + 1, options.room};
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
   const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::sample_select,
                                 StageId::material_sort, StageId::shade, StageId::light, StageId::motion},
-                     .framebuffer = dvm_framebuffer(options.clamp),
+                     .framebuffer = dvm_framebuffer(options),
                      .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage(StageId::sample_select);
@@ -137,7 +150,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
     std::vector<SampleQuad> selected =
         sample_select(visibility.surface(), bin.tile, materials.ids, select, selecting.timed());
     visibility.read_colors(selecting);
-    selecting.streams(shaded_samples(selected) * kShadingSampleBytes);
+    selecting.streams(shaded_samples(selected) * kShadingSampleBytes + end_bytes(selected, options.room));
     count_quads(bin, selected);
     shade_samples(bin, sampling.pattern, materials, selected);
     quads.insert(bin.tile, selected);
@@ -151,8 +164,10 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
     if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
   });
   run_on_tiles(context, StageId::dilate, result, [&](const Tile& tile, const BinStage& stage) {
-    dilate(quads, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current);
-    stage.streams(tile.pixels() * (kSampleColorBytes + kShadingSampleBytes));
+    dilate(quads, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current, options.room);
+    const std::vector<SampleQuad> here = quads.of(tile);
+    stage.streams((tile.pixels() + extras_of(here).size()) * (kSampleColorBytes + kShadingSampleBytes) +
+                  end_bytes(here, options.room));
     if (!context.has_blending()) return;
     put_layer_over(translucent, tile, over_time.current);
     stage.streams(tile.pixels() * kLayerBytes);
@@ -178,7 +193,7 @@ TechniqueKind dvm_kind() {
               "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
               "spread by their masks, accumulated over time",
           .source = "Hable 2021",
-          .examples = {"dvm", "dvm:material=draw", "dvm:clamp=camera", "dvm:clamp=variance"},
+          .examples = {"dvm", "dvm:material=draw", "dvm:clamp=camera", "dvm:clamp=variance", "dvm:extra=4"},
           .stressed = {"dvm"},
           .make = make_from(
               DvmOptions{},
@@ -189,10 +204,13 @@ TechniqueKind dvm_kind() {
                         choice("clamp", o.clamp,
                                {{"rest", Clamp::rest}, {"camera", Clamp::camera}, {"variance", Clamp::variance}},
                                "where the history keeps colours that the new frame lacks: where all in the pixel "
-                               "rests, where the camera does, or as far as the pixel's values varied before")};
+                               "rests, where the camera does, or as far as the pixel's values varied before"),
+                        choice("extra", o.room, {{"0", 0u}, {"4", 4u}, {"28", 28u}},
+                               "shading samples that a quad has room for beside its four; materials without a sample "
+                               "take them first, and then those of others; 28 are enough for all")};
               },
               [](const DvmOptions& o) {
-                return Technique{.framebuffer = dvm_framebuffer(o.clamp),
+                return Technique{.framebuffer = dvm_framebuffer(o),
                                  .sampled_at = places_of(msaa_sampling(8)),
                                  .errs_by = error_sources(o),
                                  .renderer = bind_options(render_dvm, o),

@@ -21,6 +21,7 @@ struct DvmOptions {
   float blend = 0.1f;
   MaterialBy material = MaterialBy::color;
   Clamp clamp = Clamp::rest;
+  std::uint32_t room = 0;  // for extra shading samples in a quad
 };
 
 }  // namespace beampipe

@@ -117,6 +117,27 @@ TEST(Dvm, VarianceKeepsWhatItHasSeenVary) {
   EXPECT_LT(flicker("dvm:clamp=variance"), 0.1);
 }
 
+// Six stripes of 1/3 px, each of its own material. Samples at a jitter position show two of them, for both columns of
+// pixels have it at the same place. So four extra samples make the picture complete in the first frame.
+TEST(Dvm, ExtraSamplesShowSixMaterialsAtOnce) {
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = 0; i < 6; ++i)
+    append(triangles, quad(i / 3.0, 0, (i + 1) / 3.0, 2, 0.5, glm::vec3(static_cast<float>(i * 5 % 6) / 8.0f)));
+  const Trace trace = pixel_trace(2, 2, triangles);
+  const Image truth = render_frames("msaa:8", trace, 1);
+  EXPECT_GT(worst_difference(render_frames("dvm", trace, 1), truth), 0.05);
+  for (const char* spec : {"dvm:extra=4", "dvm:extra=28"}) {
+    const FrameResult found = render(spec, trace);
+    EXPECT_LT(worst_difference(found.image, truth), 0x1p-11) << spec;
+    EXPECT_EQ(found.pixel_counters.at("unknown"), std::vector<float>(4, 0)) << spec;
+    for (const char* stage : {"shade", "light"}) EXPECT_EQ(stage_of(found, stage).lanes_used, 8u) << spec << stage;
+    EXPECT_EQ(stage_of(found, "material_sort").items_in, 8u) << spec;
+  }
+  const auto bytes = [](const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); };
+  EXPECT_EQ(bytes("dvm:extra=4") - bytes("dvm"), 4 + 4 + 1 + 8 + 6) << "one for each pixel";
+  EXPECT_EQ(bytes("dvm:extra=28") - bytes("dvm"), 7 * (4 + 4 + 1 + 8 + 6));
+}
+
 TEST(Dvm, ABarThinnerThanAPixelStaysWhateverFadesTheClamp) {
   const Trace trace = bar(0.2);  // covers one of eight samples, in each frame
   const double msaa = mean_red(render_frames("msaa:8", trace, 1));

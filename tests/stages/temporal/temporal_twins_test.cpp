@@ -31,7 +31,8 @@ class TemporalTwins : public SceneTwins {
     before.draws[0].transform[3][0] += 0.1;
     to_last_ = to_last_frame(poses_of(frame), before);
     looks_ = looks_of(frame);
-    std::vector<SampleQuad> quads = sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7}, ignored);
+    std::vector<SampleQuad> quads =
+        sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7, .room = 3}, ignored);
     std::vector<std::uint32_t> order;
     const std::vector<std::uint32_t> triangles = triangles_of(quads);
     for (std::uint32_t i = 0; i < triangles.size(); ++i)
@@ -171,32 +172,45 @@ TEST_P(TemporalTwins, Dilate) {
     Int draw;
     std::array<Float, 4> color;  // RGB is stored as fp16
   };
-  const auto sample_at = [&](std::size_t i) {
+  const auto quad_at = [&](std::size_t i) -> const SampleQuad& {
     const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
-    const std::uint32_t triangle =
-        quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)].triangle[y % 2 * 2 + x % 2];
+    return quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
+  };
+  const auto sample_of = [&](std::uint32_t triangle) {
     const bool none = triangle == kNoTriangle;
     const glm::vec3 color = none ? trace_.frames[0].background : colors_[triangle];
     return Sample{
         integer(none ? -1 : std::int64_t{triangles_.draws[triangle]}),
         {converted(real(color.r)), converted(real(color.g)), converted(real(color.b)), real(none ? 0.0f : 1.0f)}};
   };
+  const auto sample_at = [&](std::size_t i) {
+    const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
+    return sample_of(quad_at(i).triangle[y % 2 * 2 + x % 2]);
+  };
   struct Shown {
     std::array<Float, 4> color, low, high;
-  };
-  std::vector<Shown> shown;
-  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-    const Sample own = sample_at(i);
-    Shown pixel{own.color, own.color, own.color};
-    each_neighbor(i, [&](std::size_t j) {
-      const Sample other = sample_at(j);
+    void include(const Sample& own, const Sample& other) {
       const bool same_draw = other.draw == own.draw;
       for (std::size_t c = 0; c < 4; ++c) {
-        pixel.low[c] = lesser(pixel.low[c], select(same_draw, other.color[c], pixel.low[c]));
-        pixel.high[c] = greater(pixel.high[c], select(same_draw, other.color[c], pixel.high[c]));
+        low[c] = lesser(low[c], select(same_draw, other.color[c], low[c]));
+        high[c] = greater(high[c], select(same_draw, other.color[c], high[c]));
       }
-    });
-    shown.push_back(pixel);
+    }
+  };
+  std::vector<Shown> shown;
+  std::map<std::size_t, std::vector<Shown>> extras;  // by the first pixel of the quad
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    const Sample own = sample_at(i);
+    shown.push_back({own.color, own.color, own.color});
+    each_neighbor(i, [&](std::size_t j) { shown.back().include(own, sample_at(j)); });
+    if (i % 2 == 1 || i / static_cast<std::size_t>(width) % 2 == 1) continue;
+    for (const ExtraSample& extra : quad_at(i).extras) {
+      const Sample sample = sample_of(extra.triangle);
+      Shown& one = extras[i].emplace_back(Shown{sample.color, sample.color, sample.color});
+      const std::size_t at = i + extra.location / 8u % 2 + extra.location / 16u * static_cast<std::size_t>(width);
+      one.include(sample, sample_at(at));
+      each_neighbor(at, [&](std::size_t j) { one.include(sample, sample_at(j)); });
+    }
   }
   CurrentFrame found(trace_.frames[0].width, trace_.frames[0].height);
   StageCounters counters;
@@ -204,17 +218,21 @@ TEST_P(TemporalTwins, Dilate) {
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
     const std::size_t first = i - static_cast<std::size_t>(x % 2 + y % 2 * width);
-    const std::size_t quad[4] = {first, first + 1, first + static_cast<std::size_t>(width),
-                                 first + static_cast<std::size_t>(width) + 1};
-    const SampleQuad& masks = quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
+    std::vector<Shown> samples = {shown[first], shown[first + 1], shown[first + static_cast<std::size_t>(width)],
+                                  shown[first + static_cast<std::size_t>(width) + 1]};
+    samples.insert(samples.end(), extras[first].begin(), extras[first].end());
+    const SampleQuad& quad = quad_at(i);
     const Bits here = bits(0xffu << 8 * (x % 2 + y % 2 * 2));
-    Float weights[4];
-    for (int k = 0; k < 4; ++k) weights[k] = bit_count(bits(masks.mask[k]) & here);
-    const Float known = weights[0] + weights[1] + weights[2] + weights[3], inverse = Float(1.0f) / known;
+    std::vector<Float> weights;
+    for (const std::uint32_t mask : quad.mask) weights.push_back(bit_count(bits(mask) & here));
+    for (const ExtraSample& extra : quad.extras) weights.push_back(bit_count(bits(extra.mask) & here));
+    Float known = weights[0];
+    for (std::size_t k = 1; k < weights.size(); ++k) known = known + weights[k];
+    const Float inverse = Float(1.0f) / known;
     ASSERT_EQ(found.known[i], known.value / 8) << i;
     const auto mean = [&](std::array<Float, 4> Shown::*values, std::size_t c) {
-      Float sum = (shown[quad[0]].*values)[c] * weights[0];
-      for (std::size_t k = 1; k < 4; ++k) sum = sum + (shown[quad[k]].*values)[c] * weights[k];
+      Float sum = (samples[0].*values)[c] * weights[0];
+      for (std::size_t k = 1; k < weights.size(); ++k) sum = sum + (samples[k].*values)[c] * weights[k];
       const Float written = converted(sum * inverse);
       return known.value > 0 ? written.value : shown[i].color[c].value;  // its own sample's, if nothing is known
     };
