@@ -3,7 +3,7 @@
 
 usage: docs/over_time.py PROGRAM WHAT...
 
-PROGRAM is for instance beampipe. WHAT is a scene, which stands under a still camera for 60 frames, or a trace.
+PROGRAM is for instance beampipe. WHAT is a scene, which stands under a still camera for 60 frames, or a file of traces/samples.
 """
 import math
 import pathlib
@@ -12,8 +12,9 @@ import tempfile
 
 import measure
 
-TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance", "dvm:extra=4"]
+TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance"]
 FRAMES = 60
+SAMPLES = pathlib.Path(__file__).resolve().parent.parent / "traces/samples"
 
 
 def flicker(frames):
@@ -24,8 +25,10 @@ def flicker(frames):
 def main(program, names, folder):
     measure.print_head("scene", "technique", "first frame", "after 8", "after all", "flicker, frames 2-8", "last 8")
     for name in names:
-        is_trace = name.endswith(".json")
-        trace = name if is_trace else measure.make(program, name, f"{folder}/trace.json", "--frames", str(FRAMES))
+        if name.endswith(".json"):
+            trace = str(SAMPLES / name)
+        else:
+            trace = measure.make(program, name, f"{folder}/trace.json", "--frames", str(FRAMES))
         results = measure.results(program, "compare", trace, TECHNIQUES, folder, "--ladder", "8")
         for spec in TECHNIQUES:
             frames = results[spec]["frames"]
