@@ -11,7 +11,7 @@ import sys
 
 from measure import print_head, print_row
 
-COSTS = [(0, 0), (100, 65), (1000, 650), (3000, 2000), (10000, 6500)]  # operations for material and light
+COSTS = [(0, 0), (1000, 650), (3000, 2000)]  # operations for material and light
 DENSITIES = ["low", "medium", "high"]
 
 

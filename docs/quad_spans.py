@@ -15,7 +15,7 @@ import tempfile
 from detail import rows_of
 from measure import print_head, print_row
 
-SIZES = [0.25, 0.5, 1, 1.5, 2]  # the legs, in pixels
+SIZES = [0.5, 1, 2]  # the legs, in pixels
 CELL = 6  # pixels; a triangle that begins in the second quad of its cell stays away from the cells around it
 COLUMNS, ROWS = 150, 150
 EYE = 1000  # distance at which a unit is a pixel

@@ -179,10 +179,10 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   return result;
 }
 
-// A quad has four pixels, and six counters are about quads. Both frames have deviations.
+// A quad has four pixels, and six counters are about quads.
 std::uint32_t working_bytes(Clamp clamp) {
   constexpr std::uint32_t kQuadBytes = sizeof(SampleQuad) / 4 + 6 * sizeof(float);
-  return kTemporalWorkingBytes + kQuadBytes + (clamp == Clamp::variance ? 2 * sizeof(glm::vec4) : 0);
+  return kTemporalWorkingBytes + kQuadBytes + (clamp == Clamp::variance ? sizeof(glm::vec4) : 0);
 }
 
 }  // namespace
