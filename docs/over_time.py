@@ -3,7 +3,8 @@
 
 usage: docs/over_time.py PROGRAM WHAT...
 
-PROGRAM is for instance beampipe. WHAT is a scene, which stands under a still camera for 60 frames, or a file of traces/samples.
+PROGRAM is for instance beampipe. WHAT is a scene, which stands under a still camera for 60 frames, or a file of
+traces/samples.
 """
 import math
 import pathlib

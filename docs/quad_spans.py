@@ -56,8 +56,8 @@ def main(program, folder):
                "`msaa:8`: cover a sample", "of these, in several quads")
     for size in SIZES:
         write_trace(size, f"{folder}/trace.json")
-        subprocess.run([program, "run", f"{folder}/trace.json", "-t", "msaa:1", "msaa:8", "--no-memory-model", "--force",
-                        "-o", f"{folder}/out"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([program, "run", f"{folder}/trace.json", "-t", "msaa:1", "msaa:8", "--no-memory-model",
+                        "--force", "-o", f"{folder}/out"], check=True, stdout=subprocess.DEVNULL)
         cells = [f"{1 - (1 - size / 2) ** 2:.3f}"]
         for technique in "msaa_1", "msaa_8":
             quads = quads_by_triangle(f"{folder}/out/{technique}/frame_0000.png")

@@ -1,6 +1,7 @@
 // Decoupled visibility multisampling.
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <numeric>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
@@ -133,6 +134,11 @@ TEST(Dvm, ExtraSamplesShowSixMaterialsAtOnce) {
     for (const char* stage : {"shade", "light"}) EXPECT_EQ(stage_of(found, stage).lanes_used, 8u) << spec << stage;
     EXPECT_EQ(stage_of(found, "material_sort").items_in, 8u) << spec;
   }
+  const auto used = [&](const char* spec) {
+    const std::vector<float> by_pixel = render(spec, trace).pixel_counters.at("bytes");
+    return std::accumulate(by_pixel.begin(), by_pixel.end(), 0.0f);
+  };
+  EXPECT_EQ(used("dvm:extra=4") - used("dvm"), 4 * (4 + 4 + 1 + 8 + 6));
   const auto bytes = [](const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); };
   EXPECT_EQ(bytes("dvm:extra=4") - bytes("dvm"), 4 + 4 + 1 + 8 + 6) << "one for each pixel";
   EXPECT_EQ(bytes("dvm:extra=28") - bytes("dvm"), 7 * (4 + 4 + 1 + 8 + 6));
