@@ -1,37 +1,41 @@
 #!/usr/bin/env python3
-"""Compares the error and flicker of TAA and DVM with those of MSAA over 60 frames, for docs/techniques.md.
+"""Compares the error and flicker of TAA and DVM with those of MSAA over time, for docs/techniques.md.
 
-usage: docs/over_time.py PROGRAM SCENE...
+usage: docs/over_time.py PROGRAM WHAT...
 
-PROGRAM is for instance beampipe. The scenes stand under a still camera.
+PROGRAM is for instance beampipe. WHAT is a scene, which stands under a still camera for 60 frames, or a file of
+traces/samples.
 """
 import math
+import pathlib
 import sys
 import tempfile
 
 import measure
 
-TECHNIQUES = ["msaa:8", "taa:8", "dvm"]
+TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance"]
 FRAMES = 60
+SAMPLES = pathlib.Path(__file__).resolve().parent.parent / "traces/samples"
 
 
-def flicker(frames, first, last):
-    """Root mean square over frames, counted from 1."""
-    values = [frame["flicker"] ** 2 for frame in frames[first - 1:last]]
-    return math.sqrt(sum(values) / len(values))
+def flicker(frames):
+    """Root mean square over frames."""
+    return math.sqrt(sum(frame["flicker"] ** 2 for frame in frames) / len(frames))
 
 
-def main(program, scenes, folder):
-    measure.print_head("scene", "technique", "first frame", "after 8", f"after {FRAMES}", "flicker, frames 2-8",
-                       f"{FRAMES - 7}-{FRAMES}")
-    for scene in scenes:
-        trace = measure.make(program, scene, f"{folder}/trace.json", "--frames", str(FRAMES))
+def main(program, names, folder):
+    measure.print_head("scene", "technique", "first frame", "after 8", "after all", "flicker, frames 2-8", "last 8")
+    for name in names:
+        if name.endswith(".json"):
+            trace = str(SAMPLES / name)
+        else:
+            trace = measure.make(program, name, f"{folder}/trace.json", "--frames", str(FRAMES))
         results = measure.results(program, "compare", trace, TECHNIQUES, folder, "--ladder", "8")
         for spec in TECHNIQUES:
             frames = results[spec]["frames"]
-            errors = [frames[i - 1]["error"]["rmse"] for i in (1, 8, FRAMES)]
-            measure.print_row(scene, f"`{spec}`", *[f"{error:.4f}" for error in errors],
-                              f"{flicker(frames, 2, 8):.4f}", f"{flicker(frames, FRAMES - 7, FRAMES):.4f}")
+            errors = [frames[i]["error"]["rmse"] for i in (0, 7, -1)]
+            measure.print_row(pathlib.Path(name).stem, f"`{spec}`", *[f"{error:.4f}" for error in errors],
+                              f"{flicker(frames[1:8]):.4f}", f"{flicker(frames[-8:]):.4f}")
 
 
 if __name__ == "__main__":

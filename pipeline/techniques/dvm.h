@@ -6,6 +6,7 @@
 #include "pipeline/technique.h"
 #include "stages/samples/materials.h"
 #include "stages/samples/sample_select.h"
+#include "stages/temporal/temporal.h"
 
 namespace beampipe {
 
@@ -13,12 +14,15 @@ namespace beampipe {
 // facets.
 inline constexpr float kStillPixels = 0.05f;
 
+// By how many standard deviations Clamp::variance widens the box. With two, thin bars flicker as little as with
+// Clamp::rest, but a hut that passes another one has a third more error (docs/over_time.py).
+inline constexpr float kDeviations = 1.0f;
+
 struct DvmOptions {
   float blend = 0.1f;
   MaterialBy material = MaterialBy::color;
+  Clamp clamp = Clamp::rest;
+  std::uint32_t room = 0;  // for extra shading samples in a quad
 };
-
-// Technique::working_bytes_per_pixel. A quad has four pixels, and six counters are about quads.
-inline constexpr std::uint32_t kDvmWorkingBytes = kTemporalWorkingBytes + sizeof(SampleQuad) / 4 + 6 * sizeof(float);
 
 }  // namespace beampipe

@@ -85,7 +85,7 @@ std::vector<ErrorSource> error_sources(TaaShading shading) {
 
 FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
   const FrameContext context(job, rules_of(options.shading));
-  TemporalFrame over_time(context);
+  TemporalFrame over_time(context, {options.blend});
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
   const BinPlan plan{.stages = stages_of(options.shading),
@@ -99,7 +99,7 @@ FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
   run_on_tiles(context, StageId::temporal, result, [&](const Tile& tile, const BinStage& stage) {
     neighborhood_box(tile, stage.timed(), over_time.current);
     stage.streams(tile.pixels() * kPictureBytes);
-    over_time.accumulate(tile, {options.blend}, stage);
+    over_time.accumulate(tile, stage);
   });
   over_time.finish(result);
   return result;

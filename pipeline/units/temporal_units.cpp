@@ -19,32 +19,36 @@ std::vector<glm::vec2> FrameMotion::find(Bin& bin, DepthTestUnit& surface, Motio
   return vectors;
 }
 
-TemporalFrame::TemporalFrame(const FrameContext& context)
+TemporalFrame::TemporalFrame(const FrameContext& context, const TemporalOptions& options)
     : current(context.frame.width, context.frame.height),
       context_(context),
       history_(context.run.history ? *context.run.history : first_),
       motion_(context, history_),
-      picture_(current.color.size()) {}
+      options_(options),
+      picture_(current.color.size(), options.clamp) {}
 
 void TemporalFrame::find_motion(Bin& bin, DepthTestUnit& surface, MotionFrom from) {
   copy_to_frame(motion_.find(bin, surface, from), bin.tile, context_.frame, current.motion);
 }
 
 // What neighbouring pixels share comes from cache: each surface is moved once.
-void TemporalFrame::accumulate(const Tile& tile, const TemporalOptions& options, const BinStage& stage) {
-  constexpr std::uint64_t kHistoryBytes = 8;  // fp16 RGBA
-  temporal(current, options, history_, tile, stage.timed(), picture_);
-  stage.streams(tile.pixels() * kMotionBytes);
-  if (history_.frames > 0) stage.streams(tile.pixels() * kHistoryBytes);
-  stage.streams(tile.pixels() * kHistoryBytes);
+void TemporalFrame::accumulate(const Tile& tile, const BinStage& stage) {
+  const bool has_speed = options_.clamp == Clamp::rest || options_.clamp == Clamp::camera;
+  const std::uint64_t look = options_.clamp == Clamp::rest ? kLookBytes : 0,
+                      past = 8 + (options_.clamp == Clamp::variance ? kDeviationBytes : 0);  // 8: fp16 RGBA
+  temporal(current, options_, history_, tile, stage.timed(), picture_);
+  stage.streams(tile.pixels() * (kMotionBytes + (has_speed ? kSpeedBytes : 0) + look));
+  if (history_.frames > 0) stage.streams(tile.pixels() * (past + look));
+  stage.streams(tile.pixels() * past);
 }
 
 void TemporalFrame::finish(FrameResult& result) {
-  copy_to_image(picture_, result.image);
+  copy_to_image(picture_.color, result.image);
   history_ = {.frames = history_.frames + 1,
               .width = current.width,
               .height = current.height,
-              .color = std::move(picture_),
+              .color = std::move(picture_.color),
+              .deviation = std::move(picture_.deviation),
               .looks = std::move(current.looks),
               .poses = motion_.take_poses()};
 }

@@ -33,7 +33,8 @@ class FrameMotion {
 
 class TemporalFrame {
  public:
-  explicit TemporalFrame(const FrameContext& context);
+  // `options`: how the frame meets its history.
+  TemporalFrame(const FrameContext& context, const TemporalOptions& options);
 
   // What earlier frames left.
   const History& history() const { return history_; }
@@ -44,7 +45,7 @@ class TemporalFrame {
   void find_motion(Bin& bin, DepthTestUnit& surface, MotionFrom from = MotionFrom::ids);
 
   // Stage `temporal` of a tile, on whole frames.
-  void accumulate(const Tile& tile, const TemporalOptions& options, const BinStage& stage);
+  void accumulate(const Tile& tile, const BinStage& stage);
 
   // Hands the picture to the result, and leaves the history for the next frame.
   void finish(FrameResult& result);
@@ -56,7 +57,8 @@ class TemporalFrame {
   History first_;  // of a frame that has no history
   History& history_;
   FrameMotion motion_;
-  std::vector<glm::vec4> picture_;
+  const TemporalOptions options_;
+  Accumulated picture_;
 };
 
 }  // namespace beampipe

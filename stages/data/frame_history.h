@@ -25,6 +25,7 @@ struct History {
   std::uint32_t frames = 0;               // rendered so far
   std::int32_t width = 0, height = 0;     // pixels
   std::vector<glm::vec4> color = {};      // the last picture, rounded to fp16 RGBA
+  std::vector<glm::vec4> deviation = {};  // of its pixels' past values (temporal.h); empty if nothing follows it
   std::vector<std::uint32_t> looks = {};  // of the last frame's pixels
   Poses poses = {};                       // of the last frame
 };
@@ -37,7 +38,7 @@ struct CurrentFrame {
   std::vector<float> known;          // the part of the pixel that `color` represents, 0..1
   std::vector<glm::vec2> motion;     // vector to where the surface was in the last frame, pixels
   std::vector<std::uint32_t> looks;  // of everything in the pixel (PixelContents)
-  std::vector<float> speeds;
+  std::vector<float> speeds;         // pixels per frame: of everything in the pixel, or of the camera
 
   static constexpr std::uint32_t kPixelBytes =
       3 * sizeof(glm::vec4) + 2 * sizeof(float) + sizeof(glm::vec2) + sizeof(std::uint32_t);
@@ -55,10 +56,11 @@ struct CurrentFrame {
 inline constexpr std::uint32_t kTemporalWorkingBytes = CurrentFrame::kPixelBytes + 2 * sizeof(glm::vec4);
 
 // Sizes in the modelled machine, per pixel: the current picture as fp16 RGBA; the box as two such colours, and the
-// known part in a byte; two fp16 numbers of motion; a look; an fp16 speed.
+// known part in a byte; two fp16 numbers of motion; a look; an fp16 speed; the deviation of each channel as fp16.
 inline constexpr std::uint64_t kCurrentColorBytes = 8, kCurrentBoxBytes = 2 * 8 + 1;
 inline constexpr std::uint32_t kMotionBytes = 4;
 inline constexpr std::uint32_t kLookBytes = 4;
 inline constexpr std::uint32_t kSpeedBytes = 2;
+inline constexpr std::uint32_t kDeviationBytes = 8;
 
 }  // namespace beampipe

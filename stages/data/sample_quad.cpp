@@ -16,4 +16,12 @@ void QuadFrame::insert(const Tile& tile, const std::vector<SampleQuad>& of_tile)
   }
 }
 
+std::vector<SampleQuad> QuadFrame::of(const Tile& tile) const {
+  std::vector<SampleQuad> found;
+  for (std::int32_t y = tile.y0 / 2; y < (tile.y1 + 1) / 2; ++y)
+    for (std::int32_t x = tile.x0 / 2; x < (tile.x1 + 1) / 2; ++x)
+      found.push_back(quads[static_cast<std::size_t>(y * columns + x)]);
+  return found;
+}
+
 }  // namespace beampipe

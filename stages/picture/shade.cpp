@@ -46,15 +46,24 @@ void shade(const TileShader& shader, const std::vector<SampleFragment>& fragment
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
                    const std::vector<std::uint32_t>& order, std::vector<SampleQuad>& quads, TexelRequests* texels) {
   const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
-  for (const std::size_t item : order) {
-    const std::size_t q = item / 4, p = item % 4;
-    SampleQuad& quad = quads[q];
-    const std::size_t pixel = quad.location[p] / 8u, sample = quad.location[p] % 8u;
+  const auto color_at = [&](std::size_t q, std::uint32_t triangle, std::uint8_t location) {
+    const std::size_t pixel = location / 8u, sample = location % 8u;
     const std::size_t x = q % columns * 2 + pixel % 2, y = q / columns * 2 + pixel / 2;
     const auto index = static_cast<std::uint32_t>(y * static_cast<std::size_t>(tile.width()) + x);
-    quad.color[p] = shader.color(quad.triangle[p], index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
-                                 static_cast<float>(pattern.y[sample]) / kSubpixelUnits, 1.0f, texels);
+    const glm::vec3 color = shader.color(triangle, index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
+                                         static_cast<float>(pattern.y[sample]) / kSubpixelUnits, 1.0f, texels);
     end_request(texels);
+    return color;
+  };
+  const auto extras = extras_of(quads);
+  for (const std::size_t item : order) {
+    const std::size_t q = item / 4, p = item % 4;
+    if (q < quads.size()) {
+      quads[q].color[p] = color_at(q, quads[q].triangle[p], quads[q].location[p]);
+    } else {
+      const auto& [quad, extra] = extras[item - 4 * quads.size()];
+      extra->color = color_at(quad, extra->triangle, extra->location);
+    }
   }
 }
 

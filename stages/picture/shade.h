@@ -42,7 +42,7 @@ void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& 
 void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters);
 
 // Sets the colours of shading samples of quads, which are the tile's, row by row, in the given order: 4 q + p is sample
-// p of quad q. Charges nothing. `pattern`: of the visibility samples.
+// p of quad q, and extra samples follow those of all quads. Charges nothing. `pattern`: of the visibility samples.
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
                    const std::vector<std::uint32_t>& order, std::vector<SampleQuad>& quads,
                    TexelRequests* texels = nullptr);

@@ -1,7 +1,7 @@
 // dilate: shading samples with their masks -> pixels of the current frame.
 //
-// A pixel's colour is the mean of the four colours of its quad, weighted by the number of the pixel's visibility
-// samples that each shading sample was given. The box that the history is clamped to is the same mean of four boxes.
+// A pixel's colour is the mean of the colours of its quad's shading samples, weighted by the number of the pixel's
+// visibility samples that each was given. The box that the history is clamped to is the same mean of their boxes.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -14,10 +14,11 @@
 namespace beampipe {
 
 // Sets color, low, high and known of the tile's pixels. `draws`: one per triangle. The box of a shading
-// sample spans those of the 3x3 shading samples around it that belong to the same draw. If none of a pixel's visibility
+// sample spans those of the 3x3 shading samples around it that belong to the same draw; around the pixel of an extra
+// sample, these are the nine that pixels store. `room`: for extra samples in a quad. If none of a pixel's visibility
 // samples was given to a shading sample, the pixel takes the colour of its own shading sample, and `known` is 0.
 void dilate(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, const glm::vec3& background,
-            const Tile& tile, StageCounters& counters, CurrentFrame& frame);
+            const Tile& tile, StageCounters& counters, CurrentFrame& frame, std::uint32_t room = 0);
 
 // Per pixel, the part of it whose material has no shading sample in the quad, 0..1.
 std::vector<float> unknown_part(const CurrentFrame& frame);

@@ -30,18 +30,24 @@ void sum_over_background(const Real sum[4], const Real background[3], Real pixel
 
 // ---- dilate ----
 
-// Sets the weights of a quad's four shading samples in a pixel, and returns their sum. A weight is the number of the
-// pixel's visibility samples that the shading sample was given; `base` has the bits of the pixel.
+// Sets the weights of a quad's shading samples in a pixel, and returns their sum. A weight is the number of the pixel's
+// visibility samples that the shading sample was given; `base` has the bits of the pixel.
 template <class Bits, class Real>
-Real weigh(const Bits masks[4], Bits base, Real weights[4]) {
-  for (int i = 0; i < 4; ++i) weights[i] = bit_count(masks[i] & base);
-  return weights[0] + weights[1] + weights[2] + weights[3];
+Real weigh(const Bits masks[], int samples, Bits base, Real weights[]) {
+  Real sum = weights[0] = bit_count(masks[0] & base);
+  for (int i = 1; i < samples; ++i) {
+    weights[i] = bit_count(masks[i] & base);
+    sum = sum + weights[i];
+  }
+  return sum;
 }
 
 // `inverse`: 1 / the sum of the weights.
 template <class Real>
-Real weighted_mean(const Real values[4], const Real weights[4], Real inverse) {
-  return (values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2] + values[3] * weights[3]) * inverse;
+Real weighted_mean(const Real values[], const Real weights[], int samples, Real inverse) {
+  Real sum = values[0] * weights[0];
+  for (int i = 1; i < samples; ++i) sum = sum + values[i] * weights[i];
+  return sum * inverse;
 }
 
 // Extends the box by a neighbour's colour if it belongs to the same draw.

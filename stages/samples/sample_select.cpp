@@ -71,6 +71,20 @@ int materials_of(const QuadMaterials& quad) {
   return materials;
 }
 
+// Adds extra samples while there is room and a material has none. Returns the samples of the materials that still have
+// none; `missing`: before.
+std::uint32_t add_extras(const QuadMaterials& quad, std::uint32_t room, QuadRandom& random, std::uint32_t missing,
+                         std::vector<ExtraSample>& extras, SelectWork& work) {
+  while (missing != 0 && extras.size() < room) {
+    const int location = random.pick(missing);
+    const std::uint32_t mask = match_mask_scalar(quad.ids, quad.ids[location]) & quad.inside;
+    extras.push_back({kNoTriangle, mask, static_cast<std::uint8_t>(location), {}});
+    missing &= ~mask;
+    ++work.extras;
+  }
+  return missing;
+}
+
 // Returns the shading samples whose material has another shading sample, as bits.
 std::uint32_t to_spare(const std::uint32_t masks[4]) {
   std::uint32_t slots = 0;
@@ -81,9 +95,8 @@ std::uint32_t to_spare(const std::uint32_t masks[4]) {
 
 // Switches shading samples until every material has one or no shading sample can be spared. masks[i]: the samples of
 // shading sample i's material.
-void switch_samples(const QuadMaterials& quad, QuadRandom& random, std::uint32_t masks[4], std::uint8_t locations[4],
-                    SelectWork& work) {
-  std::uint32_t missing = quad.inside & ~(masks[0] | masks[1] | masks[2] | masks[3]);
+void switch_samples(const QuadMaterials& quad, QuadRandom& random, std::uint32_t missing, std::uint32_t masks[4],
+                    std::uint8_t locations[4], SelectWork& work) {
   while (missing != 0) {
     ++work.searches;
     const std::uint32_t spare = to_spare(masks);
@@ -165,15 +178,20 @@ std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& til
     const QuadMaterials quad{all.ids.data() + kQuadSamples * q, all.inside[q]};
     quads[q].materials = static_cast<std::uint8_t>(materials_of(quad));
     quads[q].pixels = static_cast<std::uint8_t>(std::popcount(quad.inside) / static_cast<int>(kSamples));
-    switch_samples(quad, random, masks, locations, work);
+    const std::uint32_t missing = add_extras(
+        quad, options.room, random, quad.inside & ~(masks[0] | masks[1] | masks[2] | masks[3]), quads[q].extras, work);
+    switch_samples(quad, random, missing, masks, locations, work);
     share_out(random, masks, locations, quads[q], work);
+    const auto triangle_at = [&](std::uint8_t location) {
+      return surface.triangle[grid.first_sample(q, location / 8) + location % kSamples];
+    };
     for (int p = 0; p < 4; ++p) {
       quads[q].location[p] = locations[p];
-      quads[q].triangle[p] = masks[p] == 0
-                                 ? kNoTriangle
-                                 : surface.triangle[grid.first_sample(q, locations[p] / 8) + locations[p] % kSamples];
+      quads[q].triangle[p] = masks[p] == 0 ? kNoTriangle : triangle_at(locations[p]);
       work.stored += masks[p] != 0;
     }
+    for (ExtraSample& extra : quads[q].extras) extra.triangle = triangle_at(extra.location);
+    work.ends += quads[q].extras.size() < options.room;
   }
   work.pixels = tile.pixels();
   work.quads = grid.count();
@@ -186,13 +204,13 @@ std::vector<std::uint32_t> triangles_of(const std::vector<SampleQuad>& quads) {
   std::vector<std::uint32_t> triangles;
   triangles.reserve(4 * quads.size());
   for (const SampleQuad& quad : quads) triangles.insert(triangles.end(), quad.triangle, quad.triangle + 4);
+  for (const auto& [quad, extra] : extras_of(quads)) triangles.push_back(extra->triangle);
   return triangles;
 }
 
 std::uint64_t shaded_samples(const std::vector<SampleQuad>& quads) {
   std::uint64_t samples = 0;
-  for (const SampleQuad& quad : quads)
-    for (const std::uint32_t triangle : quad.triangle) samples += triangle != kNoTriangle;
+  for (const std::uint32_t triangle : triangles_of(quads)) samples += triangle != kNoTriangle;
   return samples;
 }
 

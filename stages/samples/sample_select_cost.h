@@ -14,6 +14,7 @@ struct SelectWork {
   std::uint64_t picks = 0, skips = 0;  // random choices of a set bit; set bits that were skipped
   std::uint64_t searches = 0;          // for a shading sample that can be switched
   std::uint64_t switched = 0;          // shading samples
+  std::uint64_t extras = 0, ends = 0;  // extra samples; quads with room for more
   std::uint64_t groups = 0;            // of shading samples with the same material
   std::uint64_t given = 0;             // visibility samples that were given to a shading sample,
   std::uint64_t given_once = 0;        // and those for which there was only one candidate
@@ -64,20 +65,20 @@ inline void charge(const SelectWork& work, StageCounters& counters) {
   constexpr OperationCounts of_given_once{.bit = 1};       // the number of the only candidate
   constexpr std::uint64_t kSamples = 8;                    // per pixel
   counters.items_in += work.pixels * kSamples;
-  counters.items_out += work.stored;
-  counters.ops += match_cost() * (4 * work.quads + work.switched);
+  counters.items_out += work.stored + work.extras;
+  counters.ops += match_cost() * (4 * work.quads + work.switched + work.extras);
   counters.ops += quad_cost() * work.quads;
   counters.ops += of_search * work.searches;
-  counters.ops += of_switch * work.switched;
+  counters.ops += of_switch * (work.switched + work.extras);
   counters.ops += pick_cost() * work.picks;
   counters.ops += of_skip * work.skips;
   counters.ops += group_cost() * work.groups;
   counters.ops += of_given * work.given;
   counters.ops += of_given_once * work.given_once;
   counters.bytes_read += work.pixels * kSamples * 4;  // visibility ids
-  counters.bytes_written += work.stored * kShadingSampleBytes;
+  counters.bytes_written += (work.stored + work.extras) * kShadingSampleBytes + work.ends * kEndOfExtrasBytes;
   counters.lanes_used += work.shaded;
-  counters.lanes_issued += 4 * work.quads;
+  counters.lanes_issued += 4 * work.quads + work.extras;
 }
 
 }  // namespace beampipe

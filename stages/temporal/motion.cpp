@@ -59,6 +59,20 @@ glm::dmat4 from_frame(const DrawPlacement& placement) {
   return matrix;
 }
 
+// Calls visit(x, y, sample) for each pixel of the tile, row by row, with the index of its nearest sample.
+template <class Visit>
+void each_nearest(const SampleTile& surface, const Tile& tile, Visit&& visit) {
+  const std::size_t samples = surface.samples_per_pixel;
+  auto first = surface.depth.begin();
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
+    for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
+      const auto end = first + static_cast<std::ptrdiff_t>(samples);
+      visit(x, y, static_cast<std::size_t>(std::min_element(first, end) - surface.depth.begin()));
+      first = end;
+    }
+  }
+}
+
 }  // namespace
 
 Poses poses_of(const Frame& frame, const std::vector<DrawPlacement>& placements) {
@@ -89,19 +103,12 @@ std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
 
 std::vector<glm::vec2> motion(const SampleTile& surface, const MovingTile& in, StageCounters& counters,
                               MotionFrom from) {
-  const Tile& tile = in.tile;
-  const std::size_t samples = surface.samples_per_pixel;
   std::vector<glm::vec2> vectors;
-  vectors.reserve(tile.pixels());
-  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
-    for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
-      const auto first = surface.depth.begin() + static_cast<std::ptrdiff_t>(vectors.size() * samples);
-      const auto nearest = std::min_element(first, first + static_cast<std::ptrdiff_t>(samples));
-      const auto at = static_cast<std::size_t>(nearest - surface.depth.begin());
-      vectors.push_back(pixel_motion(in, draw_at(surface, at, in), x + 0.5, y + 0.5, *nearest));
-    }
-  }
-  charge_motion(vectors.size(), samples, from, counters);
+  vectors.reserve(in.tile.pixels());
+  each_nearest(surface, in.tile, [&](std::int32_t x, std::int32_t y, std::size_t at) {
+    vectors.push_back(pixel_motion(in, draw_at(surface, at, in), x + 0.5, y + 0.5, surface.depth[at]));
+  });
+  charge_motion(vectors.size(), surface.samples_per_pixel, from, counters);
   return vectors;
 }
 
@@ -147,6 +154,17 @@ PixelContents contents(const SampleTile& surface, const MovingTile& in, const st
   }
   charge_contents(found.looks.size(), samples, shown, counters);
   return found;
+}
+
+std::vector<float> camera_speeds(const SampleTile& surface, const MovingTile& in, StageCounters& counters) {
+  std::vector<float> speeds;
+  speeds.reserve(in.tile.pixels());
+  each_nearest(surface, in.tile, [&](std::int32_t x, std::int32_t y, std::size_t at) {
+    const glm::vec2 moves = pixel_motion(in, in.frame.draws.size(), x + 0.5, y + 0.5, surface.depth[at]);
+    speeds.push_back(nearest_half(std::sqrt(square_length(moves.x, moves.y))));
+  });
+  charge_camera_speeds(speeds.size(), counters);
+  return speeds;
 }
 
 }  // namespace beampipe

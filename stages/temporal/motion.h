@@ -1,6 +1,7 @@
 // motion: the nearest surface of each pixel -> how far it has moved on the screen since the last frame.
 //
 // contents() does the same for everything in a pixel: whether it still looks the same, and how fast it moves.
+// camera_speeds() tells how far the camera alone has moved the nearest surface.
 //
 // Motion follows both frames' cameras and both transforms of the surface's draw, but not vertices that move within
 // their mesh. The background counts as the far plane of a world that stands still. So does what a draw's state paints
@@ -57,5 +58,9 @@ struct PixelContents {
 
 PixelContents contents(const SampleTile& surface, const MovingTile& in, const std::vector<std::uint32_t>& looks,
                        StageCounters& counters);
+
+// Returns how far the point that motion() follows would have moved if its draw stood still, row by row: pixels, rounded
+// to fp16. Its depth comes from motion().
+std::vector<float> camera_speeds(const SampleTile& surface, const MovingTile& in, StageCounters& counters);
 
 }  // namespace beampipe

@@ -43,6 +43,14 @@ inline OperationCounts contents_cost(std::size_t samples) {
   });
 }
 
+inline OperationCounts camera_speed_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Movement<Counted<double>> moved = counted_movement(counts);
+    const Counted<float> x(converted(to_float(moved.dx))), y(converted(to_float(moved.dy)));
+    converted(square_root(square_length(x, y)));
+  });
+}
+
 // Per draw in a pixel: its look, its matrix, its movement, and the larger of two squares.
 inline OperationCounts draw_cost() {
   return count_operations([](OperationCounts& counts) {
@@ -74,6 +82,11 @@ inline void charge_contents(std::uint64_t pixels, std::size_t samples, std::uint
   counters.ops += draw_cost() * draws;
   counters.bytes_read += pixels * samples * kVisibilityBytes;
   counters.bytes_written += pixels * (kLookBytes + kSpeedBytes);
+}
+
+inline void charge_camera_speeds(std::uint64_t pixels, StageCounters& counters) {
+  counters.ops += camera_speed_cost() * pixels;
+  counters.bytes_written += pixels * kSpeedBytes;
 }
 
 }  // namespace beampipe

@@ -34,13 +34,17 @@ Taps taps_at(const History& history, float x, float y) {
   return taps;
 }
 
+std::size_t nearest_texel(const Taps& taps) {
+  return taps.texels[std::max_element(taps.weights, taps.weights + 4) - taps.weights];
+}
+
 // The part of the clamp that applies, 0..1.
 float clamp_part(const CurrentFrame& frame, std::size_t pixel, const History& history, const Taps& taps,
-                 float still_px) {
-  if (still_px == 0) return 1;
-  const auto nearest = std::max_element(taps.weights, taps.weights + 4) - taps.weights;
-  if (history.looks[taps.texels[nearest]] != frame.looks[pixel]) return 1;
-  return frame.known[pixel] > 0 ? clamp_by_speed(frame.speeds[pixel], still_px) : 0;  // an unknown pixel has no box
+                 const TemporalOptions& options) {
+  if (options.clamp == Clamp::whole) return 1;
+  if (options.clamp == Clamp::rest && history.looks[nearest_texel(taps)] != frame.looks[pixel]) return 1;
+  if (frame.known[pixel] == 0) return 0;
+  return options.clamp == Clamp::variance ? 1 : clamp_by_speed(frame.speeds[pixel], options.still_px);
 }
 
 }  // namespace
@@ -65,7 +69,8 @@ void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& f
 }
 
 void temporal(const CurrentFrame& frame, const TemporalOptions& options, const History& history, const Tile& tile,
-              StageCounters& counters, std::vector<glm::vec4>& image) {
+              StageCounters& counters, Accumulated& to) {
+  const bool follows_deviation = options.clamp == Clamp::variance;
   const bool has_history = history.frames > 0 && history.width == frame.width && history.height == frame.height;
   std::uint64_t reused = 0;
   for (std::int32_t row = tile.y0; row < tile.y1; ++row) {
@@ -76,23 +81,29 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
       const bool on_screen =
           x >= 0 && x <= static_cast<float>(frame.width) && y >= 0 && y <= static_cast<float>(frame.height);
       if (!has_history || !on_screen) {
-        image[i] = round_half(frame.color[i]);
+        to.color[i] = round_half(frame.color[i]);
         continue;
       }
       const Taps taps = taps_at(history, x, y);
-      const float clamped = clamp_part(frame, i, history, taps, options.still_px);
+      const float clamped = clamp_part(frame, i, history, taps, options), blend = options.blend * frame.known[i];
       glm::vec4 blended;
       for (int c = 0; c < 4; ++c) {
         float texels[4];
         for (int t = 0; t < 4; ++t) texels[t] = history.color[taps.texels[t]][c];
-        blended[c] = blend_channel(texels, taps.weights, {frame.low[i][c], frame.high[i][c]}, clamped,
-                                   frame.color[i][c], options.blend * frame.known[i]);
+        const float old = filtered(texels, taps.weights), color = frame.color[i][c];
+        ChannelBox<float> box{frame.low[i][c], frame.high[i][c]};
+        if (follows_deviation) {
+          const float deviation = history.deviation[nearest_texel(taps)][c];
+          box = widened(box, deviation, options.deviations);
+          to.deviation[i][c] = rounded_to_half(next_deviation(deviation, color - old, blend));
+        }
+        blended[c] = blend_channel(old, box, clamped, color, blend);
       }
-      image[i] = round_half(blended);
+      to.color[i] = round_half(blended);
       ++reused;
     }
   }
-  charge_temporal(tile.pixels(), reused, options.still_px > 0, counters);
+  charge_temporal(tile.pixels(), reused, options.clamp, counters);
 }
 
 }  // namespace beampipe

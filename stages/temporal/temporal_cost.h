@@ -3,6 +3,7 @@
 
 #include "stages/cost/counting.h"
 #include "stages/data/frame_history.h"
+#include "stages/temporal/temporal.h"
 #include "stages/temporal/temporal_formulas.h"
 
 namespace beampipe {
@@ -20,20 +21,28 @@ inline OperationCounts temporal_pixel_cost() {
 }
 
 // Per pixel that has a history: its texels and its box are converted from fp16, and the result is computed.
-inline OperationCounts reuse_cost(bool fading) {
+inline OperationCounts reuse_cost(Clamp clamp) {
   return count_operations([&](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts), four[4] = {one, one, one, one};
     Counted<float> weights[4];
     to_float(to_integer(one)), to_float(to_integer(one));  // the first texel
     texel_weights(one, one, one, one, weights);
     for (int value = 0; value < 4 * (4 + 2); ++value) converted(one);
-    if (fading) {
+    if (clamp == Clamp::rest || clamp == Clamp::variance)
       for (int tap = 1; tap < 4; ++tap) greater(one, one);  // the texel with the largest weight
-      const Counted<float> part = clamp_by_speed(converted(one), one);
-      select(one != one, one, select(one > one, part, one));  // by its look, and by whether anything is known
+    if (clamp == Clamp::rest || clamp == Clamp::camera) clamp_by_speed(converted(one), one);
+    if (clamp != Clamp::whole) select(one > one, one, one);  // by whether anything is known
+    if (clamp == Clamp::rest) select(one != one, one, one);  // by its look
+    converted(one) * one;                                    // the blend factor times the known part
+    for (int c = 0; c < 4; ++c) {
+      const Counted<float> old = filtered(four, weights);
+      if (clamp == Clamp::variance) {
+        const Counted<float> deviation = converted(one);
+        widened({one, one}, deviation, one);
+        converted(next_deviation(deviation, one - old, one));
+      }
+      blend_channel(old, {one, one}, one, one, one);
     }
-    converted(one) * one;  // the blend factor times the known part
-    for (int c = 0; c < 4; ++c) blend_channel(four, weights, {one, one}, one, one, one);
   });
 }
 
@@ -57,17 +66,19 @@ inline void charge_box(std::uint64_t pixels, std::uint64_t neighbors, StageCount
   counters.bytes_written += pixels * kCurrentBoxBytes;
 }
 
-// `reused`: pixels that have a history; `fading`: still_px is not 0.
-inline void charge_temporal(std::uint64_t pixels, std::uint64_t reused, bool fading, StageCounters& counters) {
+// `reused`: pixels that have a history.
+inline void charge_temporal(std::uint64_t pixels, std::uint64_t reused, Clamp clamp, StageCounters& counters) {
   constexpr std::uint64_t kHistoryBytes = 8;  // fp16 RGBA
   counters.items_in += pixels;
   counters.items_out += pixels;
   counters.ops += temporal_pixel_cost() * pixels;
-  counters.ops += reuse_cost(fading) * reused;
+  counters.ops += reuse_cost(clamp) * reused;
   counters.bytes_read += pixels * (kCurrentColorBytes + kCurrentBoxBytes + kMotionBytes);
   counters.bytes_read += reused * 4 * kHistoryBytes;
-  if (fading) counters.bytes_read += pixels * (kLookBytes + kSpeedBytes) + reused * kLookBytes;
-  counters.bytes_written += pixels * kHistoryBytes;
+  if (clamp == Clamp::rest || clamp == Clamp::camera) counters.bytes_read += pixels * kSpeedBytes;
+  if (clamp == Clamp::rest) counters.bytes_read += (pixels + reused) * kLookBytes;
+  if (clamp == Clamp::variance) counters.bytes_read += reused * kDeviationBytes;
+  counters.bytes_written += pixels * (kHistoryBytes + (clamp == Clamp::variance ? kDeviationBytes : 0));
   counters.lanes_used += reused;
   counters.lanes_issued += pixels;
 }

@@ -58,12 +58,15 @@ struct ChannelBox {
   Real low, high;
 };
 
-// One channel: the history's four texels are weighted, clamped to the box as far as `clamped` (0..1) says, and blended
-// with the new colour.
+// One channel of the history, from its four texels.
 template <class Real>
-Real blend_channel(const Real texels[4], const Real weights[4], const ChannelBox<Real>& box, Real clamped, Real color,
-                   Real blend) {
-  const Real old = texels[0] * weights[0] + texels[1] * weights[1] + texels[2] * weights[2] + texels[3] * weights[3];
+Real filtered(const Real texels[4], const Real weights[4]) {
+  return texels[0] * weights[0] + texels[1] * weights[1] + texels[2] * weights[2] + texels[3] * weights[3];
+}
+
+// One channel: the history is clamped to the box as far as `clamped` (0..1) says, and blended with the new colour.
+template <class Real>
+Real blend_channel(Real old, const ChannelBox<Real>& box, Real clamped, Real color, Real blend) {
   const Real in_box = greater(box.low, lesser(box.high, old));
   const Real kept = old + (in_box - old) * clamped;
   return kept + (color - kept) * blend;
@@ -81,6 +84,19 @@ void texel_weights(Real x, Real y, Real left, Real top, Real weights[4]) {
 template <class Real>
 Real clamp_by_speed(Real speed, Real still_px) {
   return lesser(speed / still_px, Real(1.0f));
+}
+
+template <class Real>
+ChannelBox<Real> widened(const ChannelBox<Real>& box, Real deviation, Real deviations) {
+  const Real reach = deviation * deviations;
+  return {box.low - reach, box.high + reach};
+}
+
+// The standard deviation of a channel's values after one more, which is `step` away from their mean and weighs
+// `weight`.
+template <class Real>
+Real next_deviation(Real deviation, Real step, Real weight) {
+  return square_root((Real(1.0f) - weight) * (deviation * deviation + weight * (step * step)));
 }
 
 }  // namespace beampipe

@@ -54,7 +54,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string of_casav =
       "; it has reading, mask, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, order "
       "and layers";
-  const std::string of_dvm = "; it has blend and material";
+  const std::string of_dvm = "; it has blend, material, clamp and extra";
   const std::map<std::string, std::vector<const char*>> specs_of_error = {
       {names, {"", "wireframe"}},
       {names + " (did you mean 'beam'?)", {"bean", "beam ", "bean:bits=64"}},

@@ -1,6 +1,7 @@
 // Decoupled visibility multisampling.
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <numeric>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
@@ -25,8 +26,8 @@ void add_draw(Trace& trace, const std::vector<PixelSpaceTriangle>& triangles) {
 }
 
 // A frame of `after` that follows eight frames of `before`.
-Image after_eight(const Trace& before, const Trace& after) {
-  const Technique technique = parse_technique("dvm");
+Image after_eight(const Trace& before, const Trace& after, const std::string& spec = "dvm") {
+  const Technique technique = parse_technique(spec);
   History history;
   for (int i = 0; i < 8; ++i) technique.render(before, 0, {1, &history});
   return technique.render(after, 0, {1, &history}).image;
@@ -72,6 +73,89 @@ TEST(Dvm, WhatLeavesItsRestLeavesNoTrail) {
     for (std::uint32_t x = 0; x < 24; ++x)
       EXPECT_NEAR(red(image, x, 4), x >= 4 + step && x < 8 + step ? 1 : 0, 2e-3) << step << ' ' << x;
   }
+}
+
+// A square jumps by ten pixels under a still camera. The article's rule keeps the old place: nine tenths of it, as T is
+// one tenth. A pixel that was black in all frames has no deviation, so that the whole clamp removes the square there.
+TEST(Dvm, AStillCameraKeepsTheGhostOfWhatMoves) {
+  const Trace before = pixel_trace(24, 8, quad(4, -4, 8, 20, 0.5, glm::vec3(1)));
+  Trace after = before;
+  after.frames[0].draws[0].transform[3][0] = 10;
+  const Image ghost = after_eight(before, after, "dvm:clamp=camera"),
+              clean = after_eight(before, after, "dvm:clamp=variance");
+  for (std::uint32_t x = 0; x < 24; ++x) {
+    const bool was = x >= 4 && x < 8, is = x >= 14 && x < 18;
+    EXPECT_NEAR(red(ghost, x, 4), was ? 0.9 : is ? 1 : 0, 2e-3) << x;
+    EXPECT_NEAR(red(clean, x, 4), is ? 1 : 0, 2e-3) << x;
+  }
+  // Once the camera moves, by 0.05 pixel in the first frame, the ghost is gone.
+  after.frames[0].view[3][0] = 0.0625;
+  const Image moved = after_eight(before, after, "dvm:clamp=camera");
+  for (std::uint32_t x = 4; x < 8; ++x) EXPECT_NEAR(red(moved, x, 4), 0, 2e-3) << x;
+}
+
+// A still quad of six materials: in each frame two of them have no sample, each time others. So the value of its pixels
+// varies. What the whole clamp forgets, the others remember.
+TEST(Dvm, VarianceKeepsWhatItHasSeenVary) {
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = 0; i < 6; ++i)
+    append(triangles, quad(i / 3.0, 0, (i + 1) / 3.0, 2, 0.5, glm::vec3(i % 2 == 0 ? 1.0f : 0.0f)));
+  const Trace trace = pixel_trace(2, 2, triangles);
+  // How much the first pixel changes from frame to frame, once it has seen eight frames.
+  const auto flicker = [&](const char* spec) {
+    const Technique technique = parse_technique(spec);
+    History history;
+    double sum = 0, last = 0;
+    for (int i = 0; i < 40; ++i) {
+      const double now = red(technique.render(trace, 0, {1, &history}).image, 0, 0);
+      if (i >= 8) sum += std::abs(now - last);
+      last = now;
+    }
+    return sum / 32;
+  };
+  EXPECT_EQ(flicker("dvm:clamp=camera"), flicker("dvm")) << "nothing moves or changes";
+  EXPECT_LT(flicker("dvm"), 0.1) << "at most T of the colours' range";
+  EXPECT_LT(flicker("dvm:clamp=variance"), 0.1);
+}
+
+// Six stripes of 1/3 px, each of its own material. Samples at a jitter position show two of them, for both columns of
+// pixels have it at the same place. So four extra samples make the picture complete in the first frame.
+TEST(Dvm, ExtraSamplesShowSixMaterialsAtOnce) {
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = 0; i < 6; ++i)
+    append(triangles, quad(i / 3.0, 0, (i + 1) / 3.0, 2, 0.5, glm::vec3(static_cast<float>(i * 5 % 6) / 8.0f)));
+  const Trace trace = pixel_trace(2, 2, triangles);
+  const Image truth = render_frames("msaa:8", trace, 1);
+  EXPECT_GT(worst_difference(render_frames("dvm", trace, 1), truth), 0.05);
+  for (const char* spec : {"dvm:extra=4", "dvm:extra=28"}) {
+    const FrameResult found = render(spec, trace);
+    EXPECT_LT(worst_difference(found.image, truth), 0x1p-11) << spec;
+    EXPECT_EQ(found.pixel_counters.at("unknown"), std::vector<float>(4, 0)) << spec;
+    for (const char* stage : {"shade", "light"}) EXPECT_EQ(stage_of(found, stage).lanes_used, 8u) << spec << stage;
+    EXPECT_EQ(stage_of(found, "material_sort").items_in, 8u) << spec;
+  }
+  const auto used = [&](const char* spec) {
+    const std::vector<float> by_pixel = render(spec, trace).pixel_counters.at("bytes");
+    return std::accumulate(by_pixel.begin(), by_pixel.end(), 0.0f);
+  };
+  EXPECT_EQ(used("dvm:extra=4") - used("dvm"), 4 * (4 + 4 + 1 + 8 + 6));
+  const auto bytes = [](const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); };
+  EXPECT_EQ(bytes("dvm:extra=4") - bytes("dvm"), 4 + 4 + 1 + 8 + 6) << "one for each pixel";
+  EXPECT_EQ(bytes("dvm:extra=28") - bytes("dvm"), 7 * (4 + 4 + 1 + 8 + 6));
+}
+
+TEST(Dvm, ABarThinnerThanAPixelStaysWhateverFadesTheClamp) {
+  const Trace trace = bar(0.2);  // covers one of eight samples, in each frame
+  const double msaa = mean_red(render_frames("msaa:8", trace, 1));
+  for (const char* spec : {"dvm:clamp=camera", "dvm:clamp=variance"})
+    EXPECT_NEAR(mean_red(render_frames(spec, trace, 60)), msaa, 1e-3) << spec;
+}
+
+// Rest needs a speed and two looks, the camera a speed, variance two deviations of four channels.
+TEST(Dvm, TheClampsHistoryIsInTheFramebuffer) {
+  const auto bytes = [](const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); };
+  EXPECT_EQ(bytes("dvm") - bytes("dvm:clamp=camera"), 2 * 4);
+  EXPECT_EQ(bytes("dvm:clamp=variance") - bytes("dvm:clamp=camera"), 2 * 4 * 2 - 2);
 }
 
 // Nothing moves, but colours change, so the history must be rejected.

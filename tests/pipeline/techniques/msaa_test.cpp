@@ -96,4 +96,17 @@ TEST(Msaa, MoreSamplesComeNearerToTheReference) {
   EXPECT_LT(previous, 1.5e-3);
 }
 
+// Triangles less than a pixel wide, around a corner of four quads. They cover no pixel's centre, but samples on both
+// sides of a boundary, or in all four quads: 8 or 16 invocations for one triangle (the DVM article).
+TEST(Msaa, ATriangleIsShadedInEveryQuadWhereItCoversASample) {
+  const auto invocations = [](const char* spec, const PixelSpaceTriangle& triangle) {
+    return stage_of(render(spec, pixel_trace(4, 4, {triangle})), "shade").lanes_issued;
+  };
+  const PixelSpaceTriangle in_two{{{1.6, 1.95, 0.5}, {2.3, 1.7, 0.5}, {2.3, 1.95, 0.5}}, glm::vec3(1)},
+      in_four{{{1.6, 1.94, 0.5}, {2.3, 1.7, 0.5}, {2.4, 2.25, 0.5}}, glm::vec3(1)};
+  for (const PixelSpaceTriangle& triangle : {in_two, in_four}) EXPECT_EQ(invocations("msaa:1", triangle), 0u);
+  EXPECT_EQ(invocations("msaa:8", in_two), 8u);
+  EXPECT_EQ(invocations("msaa:8", in_four), 16u);
+}
+
 }  // namespace beampipe::msaa_test

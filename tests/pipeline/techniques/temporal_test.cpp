@@ -43,7 +43,7 @@ TEST(Temporal, ReprojectionFollowsADrawUnderAStillCamera) {
 
 TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
   const Trace trace = random_trace(147, 81, 200, 7);  // several tiles, and odd sizes
-  for (const char* spec : {"taa:8", "dvm"})
+  for (const char* spec : {"taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance", "dvm:extra=4"})
     EXPECT_EQ(render_frames(spec, trace, 5).rgba, render_frames(spec, trace, 5, 3).rgba);
 }
 

@@ -10,9 +10,12 @@ const std::vector<std::uint32_t> kDraws = {0, 1, 0};
 const glm::vec3 kBackground(0.125f);
 
 CurrentFrame dilated(QuadFrame quads, std::uint32_t width, std::uint32_t height) {
-  for (SampleQuad& quad : quads.quads)
+  for (SampleQuad& quad : quads.quads) {
     for (int p = 0; p < 4; ++p)
       if (quad.triangle[p] != kNoTriangle) quad.color[p] = kColors[quad.triangle[p]];
+    for (ExtraSample& extra : quad.extras)
+      if (extra.triangle != kNoTriangle) extra.color = kColors[extra.triangle];
+  }
   CurrentFrame frame(width, height);
   StageCounters counters;
   const Tile all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
@@ -50,6 +53,23 @@ TEST(Dilate, BoxesAreOfNeighborsOfTheSameDraw) {
   EXPECT_EQ(frame.high[5].r, 0.5f);
 }
 
+// Pixel 0 has four samples of its own and four of an extra one, of triangle 2, which lies at pixel 3. Pixel 3 has two
+// of that and six of an extra one of the background.
+TEST(Dilate, ExtraSamplesCountAsTheOthersDo) {
+  QuadFrame quads(2, 2);
+  quads.quads[0] = {{0, 1, 1, 0}, {0x0fu, 0xff00u, 0xff0000u, 0}, {0, 8, 16, 24}, {}};
+  quads.quads[0].extras = {{2, 0x030000f0u, 24, {}}, {kNoTriangle, 0xfc000000u, 26, {}}};
+  const CurrentFrame frame = dilated(quads, 2, 2);
+  EXPECT_FLOAT_EQ(frame.color[0].r, (4 * 1.0f + 4 * 0.25f) / 8);
+  EXPECT_FLOAT_EQ(frame.color[3].r, (2 * 0.25f + 6 * 0.125f) / 8);
+  EXPECT_FLOAT_EQ(frame.color[3].a, 2.0f / 8);
+  EXPECT_EQ(frame.known, (std::vector<float>{1, 1, 1, 1}));
+  // Triangles 0 and 2 are of one draw. The first sample's box has only those that pixels store: itself and that of
+  // pixel 3, both 1. The extra one's box is from itself to these.
+  EXPECT_FLOAT_EQ(frame.low[0].r, (4 * 1.0f + 4 * 0.25f) / 8);
+  EXPECT_FLOAT_EQ(frame.high[0].r, 1);
+}
+
 TEST(Dilate, CountsWhatItLooksAt) {
   CurrentFrame frame(4, 4);
   StageCounters counters;
@@ -68,6 +88,20 @@ TEST(Dilate, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.items_out, 16u);
   EXPECT_EQ(counters.lanes_used, 0u) << "nothing is known";
   EXPECT_EQ(counters.lanes_issued, 16u);
+  // One extra sample at a corner: 6 + 4 + 4 bytes and 4 neighbours with the one stored there. A mask of 0 ends the
+  // lists of all quads but this one, which has no more room.
+  QuadFrame quads(4, 4);
+  quads.quads[0].extras = {{kNoTriangle, 0, 0, {}}};
+  const StageCounters without = counters;
+  counters = {};
+  dilate(quads, kDraws, kBackground, {0, 0, 4, 4}, counters, frame, 1);
+  EXPECT_EQ(counters.bytes_read - without.bytes_read, 14u + 4 * (6 + 4) + 3 * 4);
+  // Each of the quad's four pixels has another mask and count, one more in their sum, and a term more in twelve means.
+  const OperationCounts term{.mul_add = 12, .add = 1 + 12, .bit = 2, .convert = 1};
+  all += term * 4;
+  all += neighbor * 4;
+  all.convert += 3;
+  EXPECT_EQ(counters.ops, all);
 }
 
 }  // namespace beampipe::dilate_test

@@ -73,6 +73,35 @@ TEST(SampleSelect, EveryMaterialOfUpToFourGetsASample) {
   }
 }
 
+// The samples at the jitter position are all of material 0. Five others have one or two samples each.
+TEST(SampleSelect, MaterialsWithoutASampleTakeExtraOnes) {
+  std::vector<std::uint32_t> ids(32, 0);
+  ids[9] = ids[10] = 1, ids[17] = 2, ids[18] = 3, ids[25] = 4, ids[31] = 5;
+  const std::map<std::uint32_t, std::uint32_t> masks = {
+      {1, 3u << 9}, {2, 1u << 17}, {3, 1u << 18}, {4, 1u << 25}, {5, 1u << 31}};
+  for (const std::uint32_t room : {0u, 4u, 28u}) {
+    StageCounters counters;
+    const SampleQuad quad = sample_select(surface_of(ids), kQuad, kOwnMaterials, {0, 1, room}, counters).front();
+    std::uint32_t known = quad.mask[0] | quad.mask[1] | quad.mask[2] | quad.mask[3];
+    std::set<std::uint32_t> different;
+    for (const ExtraSample& extra : quad.extras) {
+      EXPECT_EQ(extra.mask, masks.at(extra.triangle));
+      EXPECT_EQ(ids[extra.location], extra.triangle);
+      EXPECT_EQ(known & extra.mask, 0u);
+      known |= extra.mask;
+      different.insert(extra.triangle);
+    }
+    EXPECT_EQ(different.size(), std::min(room, 5u)) << "one for each material";
+    int switched = 0;
+    for (int p = 0; p < 4; ++p) switched += quad.location[p] != 8 * p;
+    EXPECT_EQ(switched, room == 0 ? 3 : room == 4 ? 1 : 0) << room;
+    EXPECT_EQ(known == ~0u, room > 0) << "at first, two materials remain";
+    EXPECT_EQ(shaded_samples({quad}), 4 + different.size());
+    EXPECT_EQ(counters.items_out, 4 + different.size());
+    EXPECT_EQ(counters.bytes_written, (4 + different.size()) * 9 + (room == 28 ? 4 : 0)) << "a mask of 0 ends the list";
+  }
+}
+
 // A tile of 3 x 2 pixels has a whole quad and one of a single column.
 TEST(SampleSelect, QuadsKnowTheirMaterialsAndPixels) {
   const Tile tile{0, 0, 3, 2};

@@ -12,7 +12,7 @@ class SelectTwins : public SceneTwins {
  protected:
   // Processes one quad: the materials of 32 samples, the samples inside the frame, and the quad's place.
   void select(const std::uint32_t (&ids)[32], std::uint32_t inside, int x, int y, const SelectOptions& options,
-              std::uint32_t (&given)[4], int (&location)[4]) {
+              std::uint32_t (&given)[4], int (&location)[4], std::vector<ExtraSample>& extras) {
     state_ = mixed(mixed(mixed(bits(options.seed)) ^ bits(static_cast<std::uint32_t>(x))) ^
                    bits(static_cast<std::uint32_t>(y)));
     Bits mask[4];
@@ -22,6 +22,12 @@ class SelectTwins : public SceneTwins {
       mask[p] = same_material(ids, location[p]) & bits(is_inside ? inside : 0);
     }
     Bits missing = bits(inside) & ~(mask[0] | mask[1] | mask[2] | mask[3]);
+    while (missing.value != 0 && extras.size() < options.room) {
+      const int at = pick(missing);
+      const Bits found = same_material(ids, at) & bits(inside);
+      missing = missing & ~found;
+      extras.push_back({0, found.value, static_cast<std::uint8_t>(at), {}});
+    }
     while (missing.value != 0) {
       const Bits spare = shared(mask);
       if (spare.value == 0) break;
@@ -111,32 +117,43 @@ class SelectTwins : public SceneTwins {
 
 TEST_P(SelectTwins, SampleSelect) {
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  StageCounters counters;
   const SampleTile surface = tested_samples(triangles_, tile_, sampling);
   std::vector<std::uint32_t> materials;
   for (const std::uint32_t triangle : list_) materials.push_back(triangle / 3);
-  const SelectOptions options{.jitter = 5, .seed = 7};
-  const std::vector<SampleQuad> quads = sample_select(surface, tile_, materials, options, counters);
-  ASSERT_EQ(quads.size(), tile_.pixels() / 4);
-  for (std::size_t q = 0; q < quads.size(); ++q) {
-    const int columns = tile_.width() / 2, x = static_cast<int>(q) % columns, y = static_cast<int>(q) / columns;
-    std::uint32_t ids[32];
-    for (int s = 0; s < 32; ++s) {
-      const std::size_t pixel = tile_.index(2 * x + s / 8 % 2, 2 * y + s / 16);
-      const std::uint32_t triangle = surface.triangle[8 * pixel + static_cast<std::size_t>(s % 8)];
-      ids[s] = triangle == kNoTriangle ? kNoTriangle : materials[triangle];
+  for (const std::uint32_t room : {0u, 3u}) {
+    const SelectOptions options{.jitter = 5, .seed = 7, .room = room};
+    StageCounters counters;
+    const std::vector<SampleQuad> quads = sample_select(surface, tile_, materials, options, counters);
+    ASSERT_EQ(quads.size(), tile_.pixels() / 4);
+    twin_ = {};
+    std::size_t all_extras = 0;
+    for (std::size_t q = 0; q < quads.size(); ++q) {
+      const int columns = tile_.width() / 2, x = static_cast<int>(q) % columns, y = static_cast<int>(q) / columns;
+      std::uint32_t ids[32];
+      for (int s = 0; s < 32; ++s) {
+        const std::size_t pixel = tile_.index(2 * x + s / 8 % 2, 2 * y + s / 16);
+        const std::uint32_t triangle = surface.triangle[8 * pixel + static_cast<std::size_t>(s % 8)];
+        ids[s] = triangle == kNoTriangle ? kNoTriangle : materials[triangle];
+      }
+      std::uint32_t given[4] = {};
+      int location[4];
+      std::vector<ExtraSample> extras;
+      select(ids, ~0u, x, y, options, given, location, extras);
+      ASSERT_EQ(quads[q].extras.size(), extras.size()) << q;
+      all_extras += extras.size();
+      for (std::size_t i = 0; i < extras.size(); ++i) {
+        ASSERT_EQ(quads[q].extras[i].mask, extras[i].mask) << q;
+        ASSERT_EQ(quads[q].extras[i].location, extras[i].location) << q;
+      }
+      for (int p = 0; p < 4; ++p) {
+        ASSERT_EQ(quads[q].mask[p], given[p]) << q;
+        ASSERT_EQ(quads[q].location[p], location[p]) << q;
+      }
     }
-    std::uint32_t given[4] = {};
-    int location[4];
-    select(ids, ~0u, x, y, options, given, location);
-    for (int p = 0; p < 4; ++p) {
-      ASSERT_EQ(quads[q].mask[p], given[p]) << q;
-      ASSERT_EQ(quads[q].location[p], location[p]) << q;
-    }
+    EXPECT_EQ(counters.ops, twin_);
+    EXPECT_EQ(counters.lanes_used, shaded_samples(quads));
+    EXPECT_EQ(counters.lanes_issued, 4 * quads.size() + all_extras);
   }
-  EXPECT_EQ(counters.ops, twin_);
-  EXPECT_EQ(counters.lanes_used, shaded_samples(quads));
-  EXPECT_EQ(counters.lanes_issued, 4 * quads.size());
 }
 
 BEAMPIPE_ON_EVERY_SCENE(SelectTwins);

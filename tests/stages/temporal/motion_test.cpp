@@ -133,6 +133,22 @@ TEST(Motion, FollowsPlacedDepths) {
   }
 }
 
+// A draw moves by 3 pixels and the camera by 4, at right angles: the surface by 5, and the camera alone by 4.
+TEST(Motion, CameraSpeedsLeaveOutDraws) {
+  const Frame before = flat_frame(kIdentity);
+  Frame now = flat_frame(glm::translate(kIdentity, glm::dvec3(3, 0, 0)));
+  now.view = glm::translate(kIdentity, glm::dvec3(0, 4, 0));
+  const SampleTile surface = full_surface(-0.5f);
+  StageCounters counters;
+  EXPECT_NEAR(glm::length(vectors(surface, now, before)[0]), 5, kHalf * 5);
+  for (const float speed :
+       camera_speeds(surface, {kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before))}, counters))
+    EXPECT_NEAR(speed, 4, kHalf * 4);
+  // Per pixel: the movement of a point, two numbers to float and fp16, two products, a sum and a root to fp16.
+  EXPECT_EQ(counters.bytes_written, std::uint64_t{kSize} * kSize * 2);
+  EXPECT_EQ(counters.ops.convert, std::uint64_t{kSize} * kSize * 5);
+}
+
 TEST(Motion, FollowsTheNearestSample) {
   const Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(1, 0, 0)));
   SampleTile surface(kTile, {CellGrid{}, standard_pattern(8)}, 0);  // background

@@ -11,7 +11,12 @@ constexpr float kOld = 1.0f, kOther = 0.5f, kNew = 0.25f;
 // its boxes contain all colours.
 struct Fixture {
   CurrentFrame frame{2, 1};
-  History history{.frames = 1, .width = 2, .height = 1, .color = {glm::vec4(kOld), glm::vec4(kOther)}, .looks = {0, 0}};
+  History history{.frames = 1,
+                  .width = 2,
+                  .height = 1,
+                  .color = {glm::vec4(kOld), glm::vec4(kOther)},
+                  .deviation = {glm::vec4(0), glm::vec4(0)},
+                  .looks = {0, 0}};
 
   Fixture() {
     frame.color.assign(2, glm::vec4(kNew));
@@ -22,9 +27,9 @@ struct Fixture {
 
   float first_pixel(const TemporalOptions& options) const {
     StageCounters counters;
-    std::vector<glm::vec4> image(2);
-    temporal(frame, options, history, {0, 0, 2, 1}, counters, image);
-    return image[0].r;
+    Accumulated found(2, options.clamp);
+    temporal(frame, options, history, {0, 0, 2, 1}, counters, found);
+    return found.color[0].r;
   }
 };
 
@@ -69,7 +74,7 @@ TEST(Temporal, ClampsTheHistoryToTheBox) {
 TEST(Temporal, TheClampFadesOutWhereNothingMoves) {
   Fixture fixture;
   fixture.close_box();
-  const TemporalOptions options{0.1f, 0.05f};
+  const TemporalOptions options{0.1f, Clamp::rest, 0.05f};
   EXPECT_NEAR(fixture.first_pixel(options), blended(kOld, 0.1f), kFp16);
   fixture.frame.speeds[0] = 0.025f;
   EXPECT_NEAR(fixture.first_pixel(options), blended((kOld + kNew) / 2, 0.1f), 2 * kFp16);
@@ -83,9 +88,9 @@ TEST(Temporal, WhatIsKnownInPartWeighsLess) {
   EXPECT_NEAR(fixture.first_pixel({0.2f}), blended(kOld, 0.1f), kFp16);
   fixture.frame.known[0] = 0;
   fixture.close_box();  // has no effect on an unknown pixel
-  EXPECT_EQ(fixture.first_pixel({0.2f, 0.05f}), kOld);
+  EXPECT_EQ(fixture.first_pixel({0.2f, Clamp::rest, 0.05f}), kOld);
   fixture.history.looks[0] = 7;
-  EXPECT_EQ(fixture.first_pixel({0.2f, 0.05f}), kNew) << "the old surface is gone";
+  EXPECT_EQ(fixture.first_pixel({0.2f, Clamp::rest, 0.05f}), kNew) << "the old surface is gone";
 }
 
 TEST(Temporal, ANeighborhoodsBoxEndsAtTheFrame) {
@@ -104,41 +109,108 @@ TEST(Temporal, ANeighborhoodsBoxEndsAtTheFrame) {
 TEST(Temporal, WhereThePixelLookedOtherwiseTheClampIsWhole) {
   Fixture fixture;
   fixture.close_box();
-  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "nothing is clamped at rest";
+  EXPECT_NEAR(fixture.first_pixel({0.1f, Clamp::rest, 0.05f}), blended(kOld, 0.1f), kFp16)
+      << "nothing is clamped at rest";
   fixture.history.looks[1] = 7;
-  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "the nearest texel has the same look";
+  EXPECT_NEAR(fixture.first_pixel({0.1f, Clamp::rest, 0.05f}), blended(kOld, 0.1f), kFp16)
+      << "the nearest texel has the same look";
   fixture.history.looks[0] = 7;
-  EXPECT_EQ(fixture.first_pixel({0.1f, 0.05f}), kNew);
+  EXPECT_EQ(fixture.first_pixel({0.1f, Clamp::rest, 0.05f}), kNew);
+}
+
+// The camera rests, so nothing is clamped, whatever moved or changed its look. Only a frame under a moving camera is.
+TEST(Temporal, TheCamerasRestAloneFadesTheClamp) {
+  Fixture fixture;
+  fixture.close_box();
+  fixture.history.looks[0] = 7;
+  const TemporalOptions options{0.1f, Clamp::camera, 0.05f};
+  EXPECT_NEAR(fixture.first_pixel(options), blended(kOld, 0.1f), kFp16) << "a ghost";
+  fixture.frame.speeds[0] = 0.0125f;
+  EXPECT_NEAR(fixture.first_pixel(options), blended(0.75f * kOld + 0.25f * kNew, 0.1f), 2 * kFp16);
+  fixture.frame.speeds[0] = 0.05f;
+  EXPECT_EQ(fixture.first_pixel(options), kNew);
+  fixture.frame.known[0] = 0;
+  EXPECT_EQ(fixture.first_pixel(options), kOld) << "an unknown pixel has no box";
+}
+
+// The deviation of the channels' past values, after a frame.
+glm::vec4 deviation_after(const Fixture& fixture, const TemporalOptions& options) {
+  StageCounters counters;
+  Accumulated found(2, options.clamp);
+  temporal(fixture.frame, options, fixture.history, {0, 0, 2, 1}, counters, found);
+  return found.deviation[0];
+}
+
+// The box is a point, kNew, 0.75 below the history.
+TEST(Temporal, PastDeviationWidensTheBox) {
+  Fixture fixture;
+  fixture.close_box();
+  fixture.history.deviation.assign(2, glm::vec4(0));
+  const TemporalOptions options{0.1f, Clamp::variance, 0.05f, 2.0f};
+  EXPECT_EQ(fixture.first_pixel(options), kNew) << "variance 0: the clamp is whole";
+  fixture.history.deviation[0] = glm::vec4(0.125f);
+  EXPECT_NEAR(fixture.first_pixel(options), blended(kNew + 2 * 0.125f, 0.1f), kFp16);
+  fixture.history.deviation[0] = glm::vec4(0.5f);
+  EXPECT_NEAR(fixture.first_pixel(options), blended(kOld, 0.1f), kFp16) << "within the box";
+  fixture.frame.motion[0] = {0.75f, 0};
+  EXPECT_EQ(fixture.first_pixel(options), kNew) << "the texel nearest to where the surface was has none";
+}
+
+// A value that weighs 1/2 and is `step` from the mean of others with variance v: the mean moves by step/2, so that both
+// halves are step/2 from it, beside what the others varied: v/2 + step^2/4. What is not known changes nothing.
+TEST(Temporal, DeviationIsThatOfTheWeightedValues) {
+  Fixture fixture;
+  fixture.history.deviation.assign(2, glm::vec4(0.5f, 0, 0, 0));
+  const TemporalOptions options{0.5f, Clamp::variance};
+  constexpr float kStep = kOld - kNew;
+  EXPECT_NEAR(deviation_after(fixture, options).r, std::sqrt(0.5f * 0.5f / 2 + kStep * kStep / 4), kFp16);
+  EXPECT_NEAR(deviation_after(fixture, options).g, kStep / 2, kFp16);
+  fixture.frame.known[0] = 0;
+  EXPECT_EQ(deviation_after(fixture, options), glm::vec4(0.5f, 0, 0, 0));
+  fixture.history.frames = 0;
+  EXPECT_EQ(deviation_after(fixture, options), glm::vec4(0));
 }
 
 TEST(Temporal, CountsWhatItLooksAt) {
   Fixture fixture;
   fixture.frame.motion[1] = glm::vec2(1000);  // off the screen, so there is nothing to reuse
-  StageCounters counters;
-  std::vector<glm::vec4> image(2);
-  temporal(fixture.frame, {0.1f}, fixture.history, {0, 0, 2, 1}, counters, image);
+  const auto count = [&](const TemporalOptions& options) {
+    StageCounters counters;
+    Accumulated found(2, options.clamp);
+    temporal(fixture.frame, options, fixture.history, {0, 0, 2, 1}, counters, found);
+    return counters;
+  };
+  StageCounters counters = count({0.1f});
   // Both pixels: two sums, four comparisons, the motion and four channels from fp16, and four to fp16. The first pixel:
   // its first texel, four weights, 24 values from fp16, the known part and, for each channel, 4 weights, the clamp and
   // two blends.
   const OperationCounts both{.add = 2 + 4, .convert = 2 + 8},
       first{4 + 1 + 4 * 6, 6 + 4 * (3 + 2 + 4), 0, 0, 0, 2 + 2 + 24 + 1};
-  OperationCounts all = both * 2;
-  all += first;
-  EXPECT_EQ(counters.ops, all);
+  OperationCounts whole = both * 2;
+  whole += first;
+  EXPECT_EQ(counters.ops, whole);
   EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4) + 4 * 8);
   EXPECT_EQ(counters.bytes_written, 2u * 8);
   EXPECT_EQ(counters.items_in, 2u);
   EXPECT_EQ(counters.items_out, 2u);
   EXPECT_EQ(counters.lanes_used, 1u) << "one has a history";
   EXPECT_EQ(counters.lanes_issued, 2u);
-  counters = {};
-  temporal(fixture.frame, {0.1f, 0.05f}, fixture.history, {0, 0, 2, 1}, counters, image);
-  all += OperationCounts{
-      .add = 3 + 1 + 2 + 2,
-      .special = 1,
-      .convert = 1};  // the texel with the largest weight, the part of the clamp, the look, the known part
-  EXPECT_EQ(counters.ops, all);
-  EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4 + 4 + 2) + 4 * 8 + 4);
+  const auto expect_more = [&](Clamp clamp, const OperationCounts& more, std::uint64_t read, std::uint64_t written) {
+    OperationCounts all = whole;
+    all += more;
+    const StageCounters found = count({0.1f, clamp});
+    EXPECT_EQ(found.ops, all);
+    EXPECT_EQ(found.bytes_read - counters.bytes_read, read);
+    EXPECT_EQ(found.bytes_written - counters.bytes_written, written);
+  };
+  // The part of the clamp, and the known part.
+  expect_more(Clamp::camera, {.add = 1 + 2, .special = 1, .convert = 1}, 2 * 2, 0);
+  // The texel with the largest weight, the part of the clamp, the look, the known part.
+  expect_more(Clamp::rest, {.add = 3 + 1 + 2 + 2, .special = 1, .convert = 1}, 2 * (4 + 2) + 4, 0);
+  // The texel with the largest weight, the known part and, for each channel, the deviation from and to fp16, the box's
+  // reach and two sides, the step, what is left of the weight, a sum, four products and a root.
+  expect_more(Clamp::variance,
+              {.mul_add = 4 * (1 + 4), .add = 3 + 2 + 4 * (2 + 1 + 1 + 1), .special = 4, .convert = 4 * 2}, 8, 2 * 8);
   counters = {};
   neighborhood_box({0, 0, 2, 1}, counters, fixture.frame);
   EXPECT_EQ(counters.ops, (OperationCounts{.add = 2 * 8, .convert = 2 * (4 + 4 + 8)})) << "each has one neighbour";

@@ -31,7 +31,8 @@ class TemporalTwins : public SceneTwins {
     before.draws[0].transform[3][0] += 0.1;
     to_last_ = to_last_frame(poses_of(frame), before);
     looks_ = looks_of(frame);
-    std::vector<SampleQuad> quads = sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7}, ignored);
+    std::vector<SampleQuad> quads =
+        sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7, .room = 3}, ignored);
     std::vector<std::uint32_t> order;
     const std::vector<std::uint32_t> triangles = triangles_of(quads);
     for (std::uint32_t i = 0; i < triangles.size(); ++i)
@@ -151,38 +152,65 @@ TEST_P(TemporalTwins, Contents) {
   EXPECT_EQ(counters.ops, twin_);
 }
 
+TEST_P(TemporalTwins, CameraSpeeds) {
+  StageCounters counters;
+  const std::vector<float> found =
+      camera_speeds(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, counters);
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    const auto depths = surface_.depth.begin() + static_cast<std::ptrdiff_t>(kSamples * i);
+    const float nearest = *std::min_element(depths, depths + kSamples);  // motion() has found it
+    twin_.fetch -= 1;                                                    // there is one matrix for all
+    const Vector moves = moved(looks_.size() - 1, i, nearest);
+    ASSERT_EQ(found[i], nearest_half(converted(square_root(moves.x * moves.x + moves.y * moves.y)).value)) << i;
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
 TEST_P(TemporalTwins, Dilate) {
   const std::int32_t width = tile_.width();
   struct Sample {
     Int draw;
     std::array<Float, 4> color;  // RGB is stored as fp16
   };
-  const auto sample_at = [&](std::size_t i) {
+  const auto quad_at = [&](std::size_t i) -> const SampleQuad& {
     const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
-    const std::uint32_t triangle =
-        quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)].triangle[y % 2 * 2 + x % 2];
+    return quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
+  };
+  const auto sample_of = [&](std::uint32_t triangle) {
     const bool none = triangle == kNoTriangle;
     const glm::vec3 color = none ? trace_.frames[0].background : colors_[triangle];
     return Sample{
         integer(none ? -1 : std::int64_t{triangles_.draws[triangle]}),
         {converted(real(color.r)), converted(real(color.g)), converted(real(color.b)), real(none ? 0.0f : 1.0f)}};
   };
+  const auto sample_at = [&](std::size_t i) {
+    const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
+    return sample_of(quad_at(i).triangle[y % 2 * 2 + x % 2]);
+  };
   struct Shown {
     std::array<Float, 4> color, low, high;
-  };
-  std::vector<Shown> shown;
-  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
-    const Sample own = sample_at(i);
-    Shown pixel{own.color, own.color, own.color};
-    each_neighbor(i, [&](std::size_t j) {
-      const Sample other = sample_at(j);
+    void include(const Sample& own, const Sample& other) {
       const bool same_draw = other.draw == own.draw;
       for (std::size_t c = 0; c < 4; ++c) {
-        pixel.low[c] = lesser(pixel.low[c], select(same_draw, other.color[c], pixel.low[c]));
-        pixel.high[c] = greater(pixel.high[c], select(same_draw, other.color[c], pixel.high[c]));
+        low[c] = lesser(low[c], select(same_draw, other.color[c], low[c]));
+        high[c] = greater(high[c], select(same_draw, other.color[c], high[c]));
       }
-    });
-    shown.push_back(pixel);
+    }
+  };
+  std::vector<Shown> shown;
+  std::map<std::size_t, std::vector<Shown>> extras;  // by the first pixel of the quad
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    const Sample own = sample_at(i);
+    shown.push_back({own.color, own.color, own.color});
+    each_neighbor(i, [&](std::size_t j) { shown.back().include(own, sample_at(j)); });
+    if (i % 2 == 1 || i / static_cast<std::size_t>(width) % 2 == 1) continue;
+    for (const ExtraSample& extra : quad_at(i).extras) {
+      const Sample sample = sample_of(extra.triangle);
+      Shown& one = extras[i].emplace_back(Shown{sample.color, sample.color, sample.color});
+      const std::size_t at = i + extra.location / 8u % 2 + extra.location / 16u * static_cast<std::size_t>(width);
+      one.include(sample, sample_at(at));
+      each_neighbor(at, [&](std::size_t j) { one.include(sample, sample_at(j)); });
+    }
   }
   CurrentFrame found(trace_.frames[0].width, trace_.frames[0].height);
   StageCounters counters;
@@ -190,17 +218,21 @@ TEST_P(TemporalTwins, Dilate) {
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
     const std::size_t first = i - static_cast<std::size_t>(x % 2 + y % 2 * width);
-    const std::size_t quad[4] = {first, first + 1, first + static_cast<std::size_t>(width),
-                                 first + static_cast<std::size_t>(width) + 1};
-    const SampleQuad& masks = quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
+    std::vector<Shown> samples = {shown[first], shown[first + 1], shown[first + static_cast<std::size_t>(width)],
+                                  shown[first + static_cast<std::size_t>(width) + 1]};
+    samples.insert(samples.end(), extras[first].begin(), extras[first].end());
+    const SampleQuad& quad = quad_at(i);
     const Bits here = bits(0xffu << 8 * (x % 2 + y % 2 * 2));
-    Float weights[4];
-    for (int k = 0; k < 4; ++k) weights[k] = bit_count(bits(masks.mask[k]) & here);
-    const Float known = weights[0] + weights[1] + weights[2] + weights[3], inverse = Float(1.0f) / known;
+    std::vector<Float> weights;
+    for (const std::uint32_t mask : quad.mask) weights.push_back(bit_count(bits(mask) & here));
+    for (const ExtraSample& extra : quad.extras) weights.push_back(bit_count(bits(extra.mask) & here));
+    Float known = weights[0];
+    for (std::size_t k = 1; k < weights.size(); ++k) known = known + weights[k];
+    const Float inverse = Float(1.0f) / known;
     ASSERT_EQ(found.known[i], known.value / 8) << i;
     const auto mean = [&](std::array<Float, 4> Shown::*values, std::size_t c) {
-      Float sum = (shown[quad[0]].*values)[c] * weights[0];
-      for (std::size_t k = 1; k < 4; ++k) sum = sum + (shown[quad[k]].*values)[c] * weights[k];
+      Float sum = (samples[0].*values)[c] * weights[0];
+      for (std::size_t k = 1; k < weights.size(); ++k) sum = sum + (samples[k].*values)[c] * weights[k];
       const Float written = converted(sum * inverse);
       return known.value > 0 ? written.value : shown[i].color[c].value;  // its own sample's, if nothing is known
     };
@@ -240,12 +272,13 @@ TEST_P(TemporalTwins, Temporal) {
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {  // something else was there, with a lighter colour
     for (int c = 0; c < 4; ++c) history.color[i][c] = HalfBits(0.5f + 0.5f * frame.color[(i * 7) % tile_.pixels()][c]);
     if (i % 5 == 0) history.looks[i] ^= 1;
+    history.deviation.emplace_back(HalfBits(0.01f * static_cast<float>(i % 11)));
   }
-  for (const float still_px : {0.0f, 2.0f}) {
-    const TemporalOptions options{0.1f, still_px};
+  for (const Clamp clamp : {Clamp::whole, Clamp::rest, Clamp::camera, Clamp::variance}) {
+    const TemporalOptions options{0.1f, clamp, 2.0f, 1.5f};
     StageCounters counters;
-    std::vector<glm::vec4> image(tile_.pixels());
-    temporal(frame, options, history, tile_, counters, image);
+    Accumulated found(tile_.pixels(), clamp);
+    temporal(frame, options, history, tile_, counters, found);
     twin_ = {};
     for (std::size_t i = 0; i < tile_.pixels(); ++i) {
       const Float one(1.0f), half(0.5f), width(float(frame.width)), height(float(frame.height)), zero(0.0f);
@@ -266,27 +299,35 @@ TEST_P(TemporalTwins, Temporal) {
           texels[t] = static_cast<std::size_t>(row * frame.width + column);
         }
         const Float known = converted(real(frame.known[i]));
-        Float clamped = real(1.0f);
-        if (still_px > 0) {
-          std::size_t nearest = 0;
+        std::size_t nearest = 0;
+        if (clamp == Clamp::rest || clamp == Clamp::variance)
           for (std::size_t t = 1; t < 4; ++t)
             if (weights[t] > weights[nearest]) nearest = t;
-          const bool other = bits(history.looks[texels[nearest]]) != bits(frame.looks[i]), any = known > zero;
-          const Float faded = lesser(converted(real(frame.speeds[i])) / real(still_px), one);
-          clamped = select(other, real(1.0f), select(any, faded, real(0.0f)));
-        }
+        Float clamped = real(1.0f);
+        if (clamp == Clamp::rest || clamp == Clamp::camera)
+          clamped = lesser(converted(real(frame.speeds[i])) / real(options.still_px), one);
+        if (clamp != Clamp::whole) clamped = select(known > zero, clamped, real(0.0f));
+        if (clamp == Clamp::rest)
+          clamped = select(bits(history.looks[texels[nearest]]) != bits(frame.looks[i]), real(1.0f), clamped);
         const Float blend = real(options.blend) * known;
         for (std::size_t c = 0; c < 4; ++c) {
           const auto channel = static_cast<int>(c);
           const auto texel = [&](int t) { return converted(real(history.color[texels[t]][channel])) * weights[t]; };
           const Float old = texel(0) + texel(1) + texel(2) + texel(3);
-          const Float low = converted(real(frame.low[i][channel])), high = converted(real(frame.high[i][channel]));
+          Float low = converted(real(frame.low[i][channel])), high = converted(real(frame.high[i][channel]));
+          if (clamp == Clamp::variance) {
+            const Float past = converted(real(history.deviation[texels[nearest]][channel]));
+            const Float reach = past * real(options.deviations), step = color[c] - old;
+            low = low - reach, high = high + reach;
+            const Float variance = (one - blend) * (past * past + blend * (step * step));
+            ASSERT_EQ(found.deviation[i][channel], float(HalfBits(converted(square_root(variance)).value))) << i;
+          }
           const Float kept = old + (greater(low, lesser(high, old)) - old) * clamped;
           color[c] = kept + (color[c] - kept) * blend;
         }
       }
       for (std::size_t c = 0; c < 4; ++c)
-        ASSERT_EQ(image[i][static_cast<int>(c)], float(HalfBits(converted(color[c]).value))) << i;
+        ASSERT_EQ(found.color[i][static_cast<int>(c)], float(HalfBits(converted(color[c]).value))) << i;
     }
     EXPECT_EQ(counters.ops, twin_);
   }

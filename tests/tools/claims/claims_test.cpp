@@ -217,11 +217,11 @@ TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
   report.hardware = titan_v();
   StageCounters shade{StageId::shade}, light{StageId::light};
   shade.dram_bytes = 1'000'000, light.dram_bytes = 3'000'000;
-  TechniqueReport& result = add_result(report, "dvm", frame_with({shade, light}));
+  TechniqueReport& result = add_result(report, "dvm:clamp=camera", frame_with({shade, light}));
   const double megabyte = 1'000'000 / titan_v().rates.at("dram_bytes_per_clk") / (titan_v().clock_mhz * 1e3);
   EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, Material").value(), megabyte);
   EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, Lighting").value(), 3 * megabyte);
-  EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, Total").value(), 4 * megabyte);
+  EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, all passes").value(), 4 * megabyte);
   EXPECT_FALSE(ours(report, "low density, DVM, Motion"));
   EXPECT_FALSE(ours(report, "low density, Deferred, Material"));
   EXPECT_FALSE(ours(report, "high density, DVM, Material"));
@@ -232,7 +232,7 @@ TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
   EXPECT_DOUBLE_EQ(
       ours(report, "high density, brute-force supersampling of visibility, 8x, Material and Lighting").value(),
       4 * megabyte);
-  result.technique = "dvm";
+  result.technique = "dvm:clamp=camera";
   EXPECT_TRUE(ours(report, "high density, DVM, Material"));
   report.memory.modelled = false;
   EXPECT_FALSE(ours(report, "high density, DVM, Material"));
@@ -248,8 +248,8 @@ TEST(Formulas, ThePassesAddUpToTheTotal) {
                                           {"Msaa 4x", "msaa:4,prepass,motion,resolve=reinhard"},
                                           {"Deferred", "taa:8,shading=deferred"},
                                           {"Visibility", "taa:8"},
-                                          {"DVM", "dvm"}}) {
-    Report report = report_for("low density, DVM, Total");
+                                          {"DVM", "dvm:clamp=camera"}}) {
+    Report report = report_for("low density, DVM, all passes");
     report.hardware = titan;
     std::vector<StageCounters> stages;
     for (const StageCounters& stage : parse_technique(spec).render(trace, 0, {1}).stages) {
@@ -260,7 +260,7 @@ TEST(Formulas, ThePassesAddUpToTheTotal) {
     double passes = 0, total = 0;
     for (const Claim& claim : all_claims(report)) {
       if (!claim.ours || !claim.name.starts_with("low density, " + name + ", ") || claim.unit != "ms") continue;
-      (claim.name.ends_with(", Total") ? total : passes) += *claim.ours;
+      (claim.name.ends_with(", all passes") ? total : passes) += *claim.ours;
     }
     EXPECT_NEAR(total, megabyte * ((2ull << stages.size()) - 2), 1e-6 * total) << name;
     EXPECT_NEAR(passes, total, 1e-6 * total) << name;

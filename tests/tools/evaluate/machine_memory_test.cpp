@@ -20,7 +20,7 @@ TEST(MachineMemory, OfPixelsIsAskedForBeforeItIsTaken) {
   EXPECT_EQ(refusal(trace, "msaa:1", 4 * kGiB), "no error");
   EXPECT_EQ(refusal(trace, "dvm", 40 * kGiB), "no error");
   EXPECT_EQ(refusal(trace, "dvm", 16 * kGiB),
-            "dvm: 16384 x 16384 pixels and 0 triangles may need 37376 MiB, and this machine has 16384");
+            "dvm: 16384 x 16384 pixels and 0 triangles may need 38912 MiB, and this machine has 16384");
 }
 
 TEST(MachineMemory, OfTrianglesThatAreDrawnAgainAndAgainIsAskedForBeforeItIsTaken) {
