@@ -30,7 +30,8 @@ Framebuffer dvm_framebuffer() {
                        {"motion", "RG16F", kMotionBytes, kOutlivesBin},
                        {"speed", "R16F", kSpeedBytes, kOutlivesBin},
                        {"look", "R32UI x 2", 2 * kLookBytes, kOutlivesBin},
-                       {"history", "RGBA16F x 2", 16, kOutlivesBin}}};
+                       {"history", "RGBA16F x 2", 16, kOutlivesBin}},
+          .translucent = {translucent_layer(8), {"translucent", "RGBA16F", kLayerBytes, kOutlivesBin}}};
 }
 
 // Counts each shading sample, with its G-buffer and colour, at the pixel of the quad that stores it.

@@ -102,6 +102,12 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
   if (!translucent.empty()) blend_fragments(translucent);
 }
 
+void DepthTestUnit::test_equal_in_shader(std::vector<SampleFragment>& fragments) {
+  const BinStage shading = bin_.stage(StageId::shade);
+  depth_test_in_shader(samples(), shading.timed(), surface_, fragments, accesses_);
+  memory_.test(accesses_, shading.counters);
+}
+
 std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving, ResolveSpace space) const {
   const SamplePlaces places(bin_, sampling_, at);
   return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),

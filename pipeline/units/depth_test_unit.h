@@ -43,6 +43,8 @@ class DepthTestUnit {
 
   // Leaves of each fragment the samples that have the stored depth, and drops fragments without any.
   void test_equal(std::vector<SampleFragment>& fragments);
+  // The same as a part of stage `shade`; nothing is translucent.
+  void test_equal_in_shader(std::vector<SampleFragment>& fragments);
   const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test
 
   // SampleRasterUnit::pass does it.
@@ -56,6 +58,10 @@ class DepthTestUnit {
 
   // Passes of other stages that read every sample.
   void read_depths(const BinStage& by) { memory_.read_depth(by.counters); }
+  // Or only those that are tested.
+  void read_depths(const std::vector<SampleAccess>& accesses, const BinStage& by) {
+    memory_.test(accesses, by.counters);
+  }
   void read_colors(const BinStage& by) { memory_.read_color(by.counters); }
 
   // The mean colour of each pixel's samples.

@@ -15,6 +15,9 @@ namespace beampipe {
 
 inline constexpr std::uint32_t kLayerBytes = 8;  // of a sample: fp16 RGBA
 
+// The layer where each pixel has so many samples.
+Surface translucent_layer(std::uint32_t samples);
+
 // Draws the bin's translucent triangles in the order of draws. They are tested against the depth that opaque triangles
 // left, do not write it, and are shaded in 2x2 quads. Call it when the opaque picture is finished: the depth test's
 // surface has the layer from then on. Returns the layer's mean in each pixel of the tile: linear RGB, times alpha, and
