@@ -32,7 +32,7 @@ std::vector<StageId> stages_of(const AcaaOptions& options) {
 }
 
 std::vector<ErrorSource> error_sources(const AcaaOptions& options) {
-  std::vector<ErrorSource> sources = {ErrorSource::sampled_depth};
+  std::vector<ErrorSource> sources = {ErrorSource::sampled_depth, ErrorSource::one_translucent_sample};
   if (options.double_counting != DoubleCounting::stencil) sources.push_back(ErrorSource::double_counting);
   if (options.color == AccumulatorFormat::fp16) sources.push_back(ErrorSource::sums_in_fp16);
   if (options.color == AccumulatorFormat::unorm8) sources.push_back(ErrorSource::sums_in_unorm8);
@@ -47,6 +47,8 @@ double rounding_error(const AcaaOptions& options) {
 FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
   const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
+  const SamplePattern& last = rounds.back().pattern;
+  const Sampling central{CellGrid{}, only(last, nearest_to_centre(last))};
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
     const bool tests_in_shader = options.visible == VisibleSamples::shader;
@@ -69,7 +71,7 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
         accumulate(fragments, sampling);
         count_by_pixel(fragments, bin.tile, sampling.grid, visible);
       });
-      if (&sampling == &rounds.back()) accumulate.blend_translucent(depth_test);
+      if (&sampling == &rounds.back()) accumulate.blend_translucent(depth_test, central);
       accumulate.finish_round();
       depth_test.count_bytes();
     }

@@ -43,20 +43,18 @@ void AccumulateUnit::operator()(const std::vector<SampleFragment>& fragments, co
     blend(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)), stage);
 }
 
-void AccumulateUnit::blend_translucent(DepthTestUnit& depth_test) {
+void AccumulateUnit::blend_translucent(DepthTestUnit& depth_test, const Sampling& central) {
   if (!bin_.context.has_blending()) return;
-  const SamplePattern& all = depth_test.sampling().pattern;
-  const std::size_t sample = nearest_to_centre(all);
-  central_ = {CellGrid{}, only(all, sample)};
-  if (BinObserver* const observer = bin_.observer()) observer->has_sample_of(central_, depth_test.sampling(), sample);
+  const std::size_t sample = nearest_to_centre(depth_test.sampling().pattern);
+  if (BinObserver* const observer = bin_.observer()) observer->has_sample_of(central, depth_test.sampling(), sample);
   const BinStage blending = bin_.stage(StageId::blend);
-  const SamplePlaces places(bin_, central_, ShadeAt::centroid);
+  const SamplePlaces places(bin_, central, ShadeAt::centroid);
   SampleRasterUnit raster(bin_, SampleRasterUnit::Translucent::alone, AlphaCoverage::test);
-  SampleShadeUnit shade(bin_, central_, ShadeAt::centroid);
+  SampleShadeUnit shade(bin_, central, ShadeAt::centroid);
   std::vector<SampleAccess> accesses;
-  raster.pass(central_, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
-    count_by_pixel(fragments, bin_.tile, central_.grid, bin_.pixel_counter("fragments"));
-    beampipe::blend({bin_.triangles(), bin_.tile, central_}, bin_.shader(), {fragments, places.of(fragments)},
+  raster.pass(central, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
+    count_by_pixel(fragments, bin_.tile, central.grid, bin_.pixel_counter("fragments"));
+    beampipe::blend({bin_.triangles(), bin_.tile, central}, bin_.shader(), {fragments, places.of(fragments)},
                     depth_test.surface(), sample, blending.timed(), accumulator_, accesses);
     depth_test.read_depths(accesses, blending);
     std::size_t left = 0;

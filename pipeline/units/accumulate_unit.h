@@ -23,9 +23,9 @@ class AccumulateUnit {
 
   // After the last round: the bin's translucent triangles go over the accumulator in the order of draws, at one sample
   // per pixel, as the talk draws water. `depth_test`: of the last round. The sample that is nearest to the centre is
-  // tested and covered, so that its stored depth is compared with a depth at the same place. Stages: sample_raster,
-  // blend, shade.
-  void blend_translucent(DepthTestUnit& depth_test);
+  // tested and covered, so that its stored depth is compared with a depth at the same place. `central`: this sample
+  // alone; it must live until the bin is finished. Stages: sample_raster, blend, shade.
+  void blend_translucent(DepthTestUnit& depth_test, const Sampling& central);
 
   // Reads the stencil values of the fragments' samples, and leaves of each fragment the samples that no earlier one has
   // taken. Does nothing without a stencil.
@@ -47,7 +47,6 @@ class AccumulateUnit {
   Bin& bin_;
   Accumulator accumulator_;
   TileSurface color_;
-  Sampling central_;                    // the sample at which translucent triangles are tested
   std::optional<TileSurface> stencil_;  // of the round: a byte per sample
 };
 

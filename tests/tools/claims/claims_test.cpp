@@ -423,6 +423,7 @@ TEST(Claims, AcaaGivesBack) {
 TEST(Claims, AcaaGivesBackTime) {
   const std::string all = "ACAA, part of MSAA's frame time that is saved";
   Report report = report_for(all);
+  report.hardware = titan_v();
   const auto add = [&](const char* spec, std::uint64_t dram) {
     StageCounters setup{StageId::vertex_setup}, testing{StageId::depth_test};
     setup.dram_bytes = 1'000'000, testing.dram_bytes = dram;
