@@ -40,7 +40,7 @@ void AccumulateUnit::operator()(const std::vector<SampleFragment>& fragments, co
   if (!bin_.context.shader.is_flat()) places = SamplePlaces(bin_, sampling, ShadeAt::centroid).of(fragments);
   accumulate(fragments, bin_.shader(), places, bin_.tile, stage.timed(), accumulator_);
   for (const SampleFragment& fragment : fragments)
-    blend(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)), stage);
+    access_color(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)), stage);
 }
 
 void AccumulateUnit::blend_translucent(DepthTestUnit& depth_test, const Sampling& central) {
@@ -54,13 +54,13 @@ void AccumulateUnit::blend_translucent(DepthTestUnit& depth_test, const Sampling
   std::vector<SampleAccess> accesses;
   raster.pass(central, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
     count_by_pixel(fragments, bin_.tile, central.grid, bin_.pixel_counter("fragments"));
-    beampipe::blend({bin_.triangles(), bin_.tile, central}, bin_.shader(), {fragments, places.of(fragments)},
-                    depth_test.surface(), sample, blending.timed(), accumulator_, accesses);
+    blend({bin_.triangles(), bin_.tile, central}, bin_.shader(), {fragments, places.of(fragments)},
+          depth_test.surface(), sample, blending.timed(), accumulator_, accesses);
     depth_test.read_depths(accesses, blending);
     std::size_t left = 0;
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (accesses[i].passed == 0) continue;
-      blend(accesses[i].triangle, accesses[i].cell, blending);
+      access_color(accesses[i].triangle, accesses[i].cell, blending);
       fragments[left++] = fragments[i];
     }
     fragments.resize(left);
@@ -83,7 +83,7 @@ std::vector<glm::vec4> AccumulateUnit::resolve_accumulator() {
   return resolve(accumulator_, bin_.background(), resolving.timed());
 }
 
-void AccumulateUnit::blend(std::uint32_t triangle, std::uint32_t pixel, const BinStage& by) {
+void AccumulateUnit::access_color(std::uint32_t triangle, std::uint32_t pixel, const BinStage& by) {
   color_.read(triangle, pixel, by.counters);
   color_.write(triangle, pixel, by.counters);
 }
@@ -93,7 +93,7 @@ void AccumulateUnit::blend_background(const SampleTile& depth) {
   const auto samples = static_cast<std::ptrdiff_t>(depth.samples_per_pixel);
   for (std::uint32_t pixel = 0; pixel < bin_.tile.pixels(); ++pixel) {
     const auto first = depth.depth.begin() + pixel * samples;
-    if (std::find(first, first + samples, kFarDepth) != first + samples) blend(kNoTriangle, pixel, stage);
+    if (std::find(first, first + samples, kFarDepth) != first + samples) access_color(kNoTriangle, pixel, stage);
   }
 }
 

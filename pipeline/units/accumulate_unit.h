@@ -40,7 +40,7 @@ class AccumulateUnit {
 
  private:
   // Adding to an accumulator reads and writes it.
-  void blend(std::uint32_t triangle, std::uint32_t pixel, const BinStage& by);
+  void access_color(std::uint32_t triangle, std::uint32_t pixel, const BinStage& by);
   void blend_background(const SampleTile& depth);
   void access_stencil(const std::vector<SampleFragment>& fragments, bool write);
 

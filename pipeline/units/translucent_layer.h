@@ -1,5 +1,5 @@
-// Translucent triangles of techniques whose samples have depth but no colours of their own, or whose colours come from
-// a G-buffer: they are drawn last, into a layer that then goes over the picture.
+// Translucent triangles of techniques whose colours come from a G-buffer: they are drawn last, into a layer that then
+// goes over the picture.
 //
 // The layer has a colour and an opacity for each sample of the depth test, so that triangles which meet in a pixel do
 // not blend with each other.
