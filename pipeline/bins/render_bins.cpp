@@ -25,6 +25,8 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
 
 // All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
 std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
+  const bool accumulates = std::ranges::find(plan.stages, StageId::accumulate) != plan.stages.end();
+  const StageId opaque_ends = accumulates ? StageId::accumulate : StageId::depth_test;
   std::vector<Stage> stages;
   if (plan.has_prepass) {
     stages = {{StageId::vertex_setup, Pass::prepass}, {StageId::sample_raster, Pass::prepass}};
@@ -36,7 +38,7 @@ std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
     stages.emplace_back(stage);
     if (stage == StageId::beam_fragment && context.has_alpha()) stages.emplace_back(StageId::alpha_mask);
     if (stage == StageId::sample_raster && context.has_cutouts()) stages.emplace_back(StageId::alpha_test);
-    if (stage == StageId::depth_test && context.has_blending()) stages.emplace_back(StageId::blend);
+    if (stage == opaque_ends && context.has_blending()) stages.emplace_back(StageId::blend);
   }
   return stages;
 }

@@ -28,6 +28,8 @@ std::vector<StageId> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
     return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test,
             StageId::shade,         StageId::accumulate, StageId::resolve};
+  if (options.visible == VisibleSamples::shader)
+    return {StageId::sample_raster, StageId::shade, StageId::accumulate, StageId::resolve};
   return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
@@ -60,12 +62,13 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
 
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
+      if (tests_in_shader) depth_test.tests_in_shader();
       prepass.pass(depth_test, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());
       shade.start_pass(sampling);
       raster.pass(depth_test, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
-        tests_in_shader ? depth_test.test_equal_in_shader(fragments) : depth_test.test_equal(fragments);
+        depth_test.test_equal(fragments);
         accumulate.test_stencil(fragments);
         shade(fragments);
         accumulate(fragments, sampling);

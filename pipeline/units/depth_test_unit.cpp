@@ -97,15 +97,10 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
     fragments.erase(rest, fragments.end());
   }
   const BinStage testing = stage();
-  depth_test_equal(samples(), testing.timed(), surface_, fragments, accesses_);
+  const auto keep_visible = main_stage_ == StageId::shade ? depth_test_in_shader : depth_test_equal;
+  keep_visible(samples(), testing.timed(), surface_, fragments, accesses_);
   memory_.test_equal(accesses_, testing.counters);
   if (!translucent.empty()) blend_fragments(translucent);
-}
-
-void DepthTestUnit::test_equal_in_shader(std::vector<SampleFragment>& fragments) {
-  const BinStage shading = bin_.stage(StageId::shade);
-  depth_test_in_shader(samples(), shading.timed(), surface_, fragments, accesses_);
-  memory_.test(accesses_, shading.counters);
 }
 
 std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving, ResolveSpace space) const {
