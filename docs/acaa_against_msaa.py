@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Compares ACAA with MSAA, scene by scene, for docs/techniques.md.
+"""Compares ACAA with MSAA, for docs/techniques.md.
 
-usage: docs/acaa_against_msaa.py PROGRAM TRACE...
+usage: docs/acaa_against_msaa.py pictures|rounds|saved|tiles|coverage PROGRAM TRACE...
 
-PROGRAM is for instance beampipe. Prints the RMSE between the picture of each ACAA and that of msaa:8, and which part of
-the DRAM bytes that seven more samples cost MSAA are saved by ACAA.
+PROGRAM is for instance beampipe. `pictures` prints, trace by trace, the RMSE between the picture of each ACAA and that
+of msaa:8, and which part of the DRAM bytes that seven more samples cost MSAA are saved by ACAA. `rounds` prints what
+more samples cost. `saved` prints, for pictures of several widths, which part of the DRAM bytes of MSAA is geometry, and
+what ACAA saves. `tiles` prints what a GPU with tile memory moves, with tiles that fit. `coverage` prints what it costs
+if the shader must test depth.
 """
+import json
 import pathlib
 import sys
 import tempfile
@@ -14,25 +18,97 @@ import measure
 
 PICTURES = ["acaa:8", "acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:8,color=unorm8"]
 ONE, EIGHT, ACAA = "msaa:1,prepass", "msaa:8,prepass", "acaa:8"
+SAME_FORMAT = "msaa:8,color=rgba16f,prepass"  # as the accumulator's, and as in the talk
+GEOMETRY = {"vertex_setup", "sample_raster", "shade"}
+ROUNDS = [f"{technique}:{samples}" for technique in ("acaa", "msaa") for samples in (8, 32, 128)]
+WIDTHS = [320, 1280, 1920, 3840]
+SHADER = "acaa:8,coverage=shader"
+PARTS = ["titan_v", "mali_g710"]
+TILE_BYTES = 16384  # half of the 32 KiB of a core of a Mali-G610 (docs/costs.md)
+TILES = [("msaa:8", 8), ("msaa:8,prepass", 8), ("acaa:8", 8), ("acaa:8", 16)]  # msaa:8 would need 20 KiB at 16 x 16
 
 
-def dram_bytes(result):
-    return sum(stage["dram_bytes"] for stage in measure.stages(result).values())
+def dram_bytes(result, stages=None):
+    return sum(stage["dram_bytes"] for name, stage in measure.stages(result).items()
+               if stages is None or name.removeprefix("prepass_") in stages)
 
 
-def main(program, traces, folder):
+def times(result):
+    """Of the frame. The implementations differ in stages that these techniques do not have."""
+    return result["frames"][0]["modelled_ms"]["shaders"]
+
+
+def name(trace):
+    return pathlib.Path(trace).stem
+
+
+def pictures(program, traces, folder):
     measure.print_head("scene", *[f"`{spec}`" for spec in PICTURES], "DRAM bytes saved")
     for trace in traces:
         results = measure.results(program, "run", trace, [ONE, EIGHT, *PICTURES], folder)
         picture = {spec: f"{folder}/{result['frames'][0]['image']}" for spec, result in results.items()}
         differences = [measure.difference(program, picture[spec], picture[EIGHT])["rmse"] for spec in PICTURES]
         one, eight, acaa = (dram_bytes(results[spec]) for spec in (ONE, EIGHT, ACAA))
-        measure.print_row(pathlib.Path(trace).stem, *[f"{difference:.5f}" for difference in differences],
+        measure.print_row(name(trace), *[f"{difference:.5f}" for difference in differences],
                           f"{100 * (eight - acaa) / (eight - one):.0f} %")
 
 
+def rounds(program, traces, folder):
+    measure.print_head("scene", "technique", "bytes off chip", "DRAM MB", "ms", "EMR")
+    for trace in traces:
+        results = measure.results(program, "compare", trace, ROUNDS, folder)
+        for spec in ROUNDS:
+            result = results[spec]
+            measure.print_row(name(trace), f"`{spec}`", result["framebuffer_bytes_per_pixel"],
+                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['sum']:.3f}",
+                              f"{result['equivalent_msaa']:.3g}")
+
+
+def saved(program, traces, folder):
+    measure.print_head("scene", "width", "geometry, of DRAM bytes", "saved: DRAM bytes", "ms, all stages at once",
+                       "ms, one stage after the other")
+    for trace in traces:
+        for width in WIDTHS:
+            results = measure.results(program, "run", trace, [SAME_FORMAT, ACAA], folder, "--width", str(width))
+            msaa, acaa = results[SAME_FORMAT], results[ACAA]
+            shares = [dram_bytes(msaa, GEOMETRY) / dram_bytes(msaa), 1 - dram_bytes(acaa) / dram_bytes(msaa),
+                      *(1 - times(acaa)[how] / times(msaa)[how] for how in ("overlap", "sum"))]
+            measure.print_row(name(trace), width, *(f"{100 * share:.0f} %" for share in shares))
+
+
+def tiles(program, traces, folder):
+    measure.print_head("scene", "technique", "tile", "KiB", "bin pairs", "DRAM MB", "ms")
+    for trace in traces:
+        for spec, side in TILES:
+            system = f"{folder}/system.json"
+            pathlib.Path(system).write_text(json.dumps({
+                "beampipe_memory_system": 1, "parameters": {"bin_pixels": side, "on_chip_bytes": TILE_BYTES},
+                "sources": {"bin_pixels": "choice", "on_chip_bytes": "half of the tile memory of a core"}}))
+            result = measure.results(program, "run", trace, [spec], folder, "--hardware", "mali_g710",
+                                     "--memory-system", system, "--framebuffer", "on-chip")[spec]
+            frame = result["frames"][0]
+            pairs = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "bin_lists") // 4
+            kib = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels") / 1024
+            measure.print_row(name(trace), f"`{spec}`", f"{side} x {side}", f"{kib:g}", pairs,
+                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['sum']:.3f}")
+
+
+def coverage(program, traces, folder):
+    measure.print_head("scene", "technique", "`shade`: invocations, millions", "operations, millions",
+                       *(f"ms, `{part}`" for part in PARTS))
+    for trace in traces:
+        results = [measure.results(program, "run", trace, [ACAA, SHADER], folder, "--hardware", part) for part in PARTS]
+        for spec in (ACAA, SHADER):
+            shade = measure.stages(results[0][spec])["shade"]
+            measure.print_row(name(trace), f"`{spec}`", f"{shade['lanes_issued'] / 1e6:.2f}",
+                              f"{shade['ops']['total'] / 1e6:.0f}",
+                              *(f"{times(result[spec])['sum']:.3f}" for result in results))
+
+
+TABLES = {table.__name__: table for table in (pictures, rounds, saved, tiles, coverage)}
+
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
+    if len(sys.argv) < 4 or sys.argv[1] not in TABLES:
         sys.exit(__doc__.strip())
     with tempfile.TemporaryDirectory() as scratch:
-        main(sys.argv[1], sys.argv[2:], scratch)
+        TABLES[sys.argv[1]](sys.argv[2], sys.argv[3:], scratch)

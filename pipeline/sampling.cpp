@@ -1,5 +1,7 @@
 #include "pipeline/sampling.h"
 
+#include <algorithm>
+
 namespace beampipe {
 
 std::vector<glm::ivec2> places_of(const Sampling& sampling) {
@@ -41,6 +43,10 @@ std::vector<Sampling> acaa_rounds(int samples) {
     rounds.push_back({CellGrid{}, pattern});
     pattern = {};
   }
+  const auto central = std::ranges::min_element(rounds, {}, [](const Sampling& round) {
+    return squared_distance_to_centre(round.pattern, nearest_to_centre(round.pattern));
+  });
+  std::rotate(rounds.begin(), central + 1, rounds.end());
   return rounds;
 }
 

@@ -16,7 +16,8 @@ std::vector<glm::ivec2> places_of(const std::vector<SamplePattern>& patterns);
 // samples / 8 cells, at least as wide as high, with the 8 standard positions in each cell.
 Sampling msaa_sampling(int samples);
 
-// The samples of each round of accumulation. The rounds together have the samples of msaa:N, at most 16 each.
+// The samples of each round of accumulation. The rounds together have the samples of msaa:N, at most 16 each. The last
+// one has the sample that is nearest to the pixel's centre.
 std::vector<Sampling> acaa_rounds(int samples);
 
 }  // namespace beampipe

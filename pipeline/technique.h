@@ -105,6 +105,7 @@ enum class ErrorSource {
   double_counting,         // triangles at equal depth count twice
   sums_in_fp16,            // of shares
   sums_in_unorm8,          // of shares
+  one_translucent_sample,  // translucent triangles cover a pixel, or do not, as they cover one of its samples
   gbuffer_of_8_bits,       // as sRGB
   quads_over_the_border,   // 2x2 quads that extend beyond the frame
   shared_shading_samples,  // between triangles of different colours

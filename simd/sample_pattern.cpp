@@ -47,6 +47,25 @@ SamplePattern standard_pattern(int count, int cell_width, int cell_height) {
   return pattern;
 }
 
+int squared_distance_to_centre(const SamplePattern& pattern, std::size_t sample) {
+  const int x = pattern.x[sample] - kSubpixelUnits / 2, y = pattern.y[sample] - kSubpixelUnits / 2;
+  return x * x + y * y;
+}
+
+std::size_t nearest_to_centre(const SamplePattern& pattern) {
+  std::size_t nearest = 0;
+  for (std::size_t s = 1; s < static_cast<std::size_t>(pattern.count); ++s)
+    if (squared_distance_to_centre(pattern, s) < squared_distance_to_centre(pattern, nearest)) nearest = s;
+  return nearest;
+}
+
+SamplePattern only(const SamplePattern& pattern, std::size_t sample) {
+  SamplePattern one;
+  one.count = 1;
+  one.x[0] = pattern.x[sample], one.y[0] = pattern.y[sample];
+  return one;
+}
+
 CellCounts split_into_cells(int cells) {
   CellCounts counts;
   for (; cells > 1; cells /= 2) (counts.columns <= counts.rows ? counts.columns : counts.rows) *= 2;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,15 @@ struct SamplePattern {
 // standardSampleLocations), scaled to a cell of `cell_width` x `cell_height` in 1/256 px; a whole pixel is 256 x 256.
 // Throws std::invalid_argument for any other count.
 SamplePattern standard_pattern(int count, int cell_width = kSubpixelUnits, int cell_height = kSubpixelUnits);
+
+// Of a sample of a pattern for a whole pixel, in units of (1/256 px)^2.
+int squared_distance_to_centre(const SamplePattern& pattern, std::size_t sample);
+
+// The sample of which this is the least; of several, the first.
+std::size_t nearest_to_centre(const SamplePattern& pattern);
+
+// The pattern with this sample alone.
+SamplePattern only(const SamplePattern& pattern, std::size_t sample);
 
 // Splits a pixel into a grid of cells. `cells` is a power of two; there are as many columns as rows, or twice as many.
 struct CellCounts {

@@ -30,6 +30,11 @@ class BinObserver {
   // finished.
   std::size_t first_sample(const Sampling& sampling);
 
+  // The only sample of `one` is this sample of `all`. Both must live as long.
+  void has_sample_of(const Sampling& one, const Sampling& all, std::size_t sample) {
+    rounds_.push_back({&one, first_sample(all) + sample});
+  }
+
   // The fragments of all triangles that are drawn, though some may be left out as hidden, before and after alpha.
   void has_fragments(const Sampling& sampling, const std::vector<SampleFragment>& before_alpha,
                      const std::vector<SampleFragment>& fragments);

@@ -25,6 +25,8 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
 
 // All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
 std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
+  const bool accumulates = std::ranges::find(plan.stages, StageId::accumulate) != plan.stages.end();
+  const StageId opaque_ends = accumulates ? StageId::accumulate : StageId::depth_test;
   std::vector<Stage> stages;
   if (plan.has_prepass) {
     stages = {{StageId::vertex_setup, Pass::prepass}, {StageId::sample_raster, Pass::prepass}};
@@ -36,7 +38,7 @@ std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
     stages.emplace_back(stage);
     if (stage == StageId::beam_fragment && context.has_alpha()) stages.emplace_back(StageId::alpha_mask);
     if (stage == StageId::sample_raster && context.has_cutouts()) stages.emplace_back(StageId::alpha_test);
-    if (stage == StageId::depth_test && context.has_blending()) stages.emplace_back(StageId::blend);
+    if (stage == opaque_ends && context.has_blending()) stages.emplace_back(StageId::blend);
   }
   return stages;
 }
@@ -113,15 +115,15 @@ struct EmptyBin {
 // Renders bins without triangles, one of each size.
 class EmptyBins {
  public:
-  EmptyBins(const FrameContext& context, const BinPlan& plan, const std::vector<Stage>& stages,
+  EmptyBins(const FrameContext& context, const Framebuffer& framebuffer, const std::vector<Stage>& stages,
             const BinRenderer& render)
-      : context_(context), plan_(plan), stages_(stages), render_(render) {}
+      : context_(context), framebuffer_(framebuffer), stages_(stages), render_(render) {}
 
   // Not thread-safe.
   void prepare(const Tile& tile) {
     std::unique_ptr<EmptyBin>& empty = bins_[size_of(tile)];
     if (empty) return;
-    empty.reset(new EmptyBin{.bin = {context_, tile, list_, stages_, plan_.framebuffer}});
+    empty.reset(new EmptyBin{.bin = {context_, tile, list_, stages_, framebuffer_}});
     empty->bin.render(render_);
     empty->look_at_result();
   }
@@ -140,7 +142,7 @@ class EmptyBins {
   static Size size_of(const Tile& tile) { return {tile.width(), tile.pixels()}; }
 
   const FrameContext& context_;
-  const BinPlan& plan_;
+  const Framebuffer& framebuffer_;
   const std::vector<Stage>& stages_;
   const BinRenderer& render_;
   const TriangleList list_;
@@ -294,7 +296,8 @@ class FrameRecorder {
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
   const FrameInput& run = context.run;
-  const int bin_size = plan.framebuffer.bin_size_on(run.memory);
+  const Framebuffer framebuffer = context.has_blending() ? plan.framebuffer.with_translucent() : plan.framebuffer;
+  const int bin_size = framebuffer.bin_size_on(run.memory);
   const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
   const FrameSinks& sinks = context.sinks;
   if (sinks.weights) sinks.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
@@ -305,7 +308,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
-  EmptyBins empty_bins(context, plan, stages, render);
+  EmptyBins empty_bins(context, framebuffer, stages, render);
   const bool shares_empty_bins = !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
@@ -325,7 +328,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
         recorder.add_empty(empty_bins.like(tile), tile);
         return;
       }
-      Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
+      Bin bin(context, grid.tiles[band.first + i], lists[i], stages, framebuffer);
       bin.render(render);
       if (BinObserver* const observer = bin.observer()) observer->finish(bin.list, plan.order, bin.picture());
       recorder.add(bin, band.first + i);
@@ -338,6 +341,11 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     on_threads(run.threads, [&] { render_band(band); });
   }
   FrameResult result = recorder.finish(pass, list_bytes);
+  const auto in_memory = [&](const Framebuffer& of) {
+    return std::uint64_t{bytes_per_pixel(of.in_memory(run.memory))} * context.frame.width * context.frame.height;
+  };
+  if (in_memory(framebuffer) > in_memory(plan.framebuffer))
+    result.buffers.push_back({kTranslucentLayer, in_memory(framebuffer) - in_memory(plan.framebuffer)});
   const auto side = static_cast<std::uint32_t>(grid.size);
   result.bin_pixels = std::min(side, context.frame.width) * std::min(side, context.frame.height);
   return result;

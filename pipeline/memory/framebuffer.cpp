@@ -15,6 +15,13 @@ std::string times(const char* format, std::uint32_t count) {
   return std::string(format).append(" x ").append(std::to_string(count));
 }
 
+Framebuffer Framebuffer::with_translucent() const {
+  Framebuffer all = *this;
+  all.surfaces.insert(all.surfaces.end(), translucent.begin(), translucent.end());
+  all.translucent.clear();
+  return all;
+}
+
 std::uint32_t Framebuffer::on_chip_bytes_per_pixel() const {
   std::uint32_t bytes = 0;
   for (const Surface& surface : surfaces) bytes += surface.outlives_bin ? 0 : surface.bytes_per_pixel;

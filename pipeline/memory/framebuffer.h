@@ -20,13 +20,21 @@ struct Surface {
 // The name of the buffer that holds the pixels of a bin where they are on chip.
 inline constexpr const char* kOpenPixels = "open_pixels";
 
+// The name of the buffer that says what a frame's translucent triangles take in memory beside the framebuffer.
+inline constexpr const char* kTranslucentLayer = "translucent_layer";
+
 struct Framebuffer {
   std::vector<Surface> surfaces = {};
+  // More of them, in frames with translucent triangles.
+  std::vector<Surface> translucent = {};
   Place place = Place::in_memory;  // on the machine that the technique is made for
   int bin_size = kBinSize;         // the technique's pixels on each side of a bin, even
 
   // That, or those of the memory system if they are smaller.
   int bin_size_on(const MemoryParameters& memory) const;
+
+  // With all surfaces of a frame with translucent triangles.
+  Framebuffer with_translucent() const;
 
   // Are the pixels of a bin on chip while it is drawn? Only if all that they store fits there.
   bool is_on_chip(const MemoryParameters& memory) const;

@@ -9,7 +9,6 @@
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
-#include "pipeline/units/translucent_layer.h"
 
 namespace beampipe {
 namespace {
@@ -29,11 +28,13 @@ std::vector<StageId> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
     return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test,
             StageId::shade,         StageId::accumulate, StageId::resolve};
+  if (options.visible == VisibleSamples::shader)
+    return {StageId::sample_raster, StageId::shade, StageId::accumulate, StageId::resolve};
   return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
 std::vector<ErrorSource> error_sources(const AcaaOptions& options) {
-  std::vector<ErrorSource> sources = {ErrorSource::sampled_depth};
+  std::vector<ErrorSource> sources = {ErrorSource::sampled_depth, ErrorSource::one_translucent_sample};
   if (options.double_counting != DoubleCounting::stencil) sources.push_back(ErrorSource::double_counting);
   if (options.color == AccumulatorFormat::fp16) sources.push_back(ErrorSource::sums_in_fp16);
   if (options.color == AccumulatorFormat::unorm8) sources.push_back(ErrorSource::sums_in_unorm8);
@@ -48,16 +49,20 @@ double rounding_error(const AcaaOptions& options) {
 FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
   const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
+  const SamplePattern& last = rounds.back().pattern;
+  const Sampling central{CellGrid{}, only(last, nearest_to_centre(last))};
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
+    const bool tests_in_shader = options.visible == VisibleSamples::shader;
     SampleRasterUnit prepass(bin, Pass::prepass), raster(bin);
+    if (tests_in_shader) raster.keeps_hidden();
     SampleShadeUnit shade(bin, rounds.front(), ShadeAt::centroid);
     AccumulateUnit accumulate(bin, options.samples, options.color, options.double_counting);
     std::vector<float>& visible = bin.pixel_counter("visible_fragments");
 
-    std::vector<glm::vec4> translucent;
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
+      if (tests_in_shader) depth_test.tests_in_shader();
       prepass.pass(depth_test, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());
@@ -69,15 +74,11 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
         accumulate(fragments, sampling);
         count_by_pixel(fragments, bin.tile, sampling.grid, visible);
       });
+      if (&sampling == &rounds.back()) accumulate.blend_translucent(depth_test, central);
       accumulate.finish_round();
-      const std::vector<glm::vec4> layer = draw_translucent(bin, depth_test, ShadeAt::centroid);
-      translucent.resize(layer.size(), glm::vec4(0.0f));
-      for (std::size_t i = 0; i < layer.size(); ++i) translucent[i] += layer[i] / static_cast<float>(rounds.size());
       depth_test.count_bytes();
     }
-    std::vector<glm::vec4> picture = accumulate.resolve_accumulator();
-    put_over(translucent, bin.observers(), picture);
-    bin.finish(picture);
+    bin.finish(accumulate.resolve_accumulator());
   });
 }
 
@@ -85,31 +86,38 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
 
 TechniqueKind acaa_kind() {
   using A = AccumulatorFormat;
-  return {.name = "acaa",
-          .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
-          .source = "Enderton et al. 2015",
-          .examples = {"acaa:8", "acaa:64,double=stencil,color=unorm8", "acaa:4,double=saturate"},
-          .stressed = {"acaa:8", "acaa:8,double=stencil", "acaa:8,color=unorm8", "acaa:8,color=fp32", "acaa:256"},
-          .make = make_from(
-              AcaaOptions{},
-              [](AcaaOptions& o) -> SpecOptions {
-                return {samples(o.samples, kMaxAcaaSamples, "samples per pixel"),
-                        choice("double", o.double_counting,
-                               {{"none", DoubleCounting::none},
-                                {"stencil", DoubleCounting::stencil},
-                                {"saturate", DoubleCounting::saturate}},
-                               "what keeps surfaces of equal depth from being counted twice"),
-                        choice("color", o.color, {{"unorm8", A::unorm8}, {"fp16", A::fp16}, {"fp32", A::fp32}},
-                               "format of the accumulator")};
-              },
-              [](const AcaaOptions& o) {
-                return Technique{.framebuffer = acaa_framebuffer(o),
-                                 .sampled_at = places_of(msaa_sampling(o.samples)),
-                                 .errs_by = error_sources(o),
-                                 .rounding_error = rounding_error(o),
-                                 .renderer = bind_options(render_acaa, o),
-                                 .is_observable = true};
-              })};
+  return {
+      .name = "acaa",
+      .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
+      .source = "Enderton et al. 2015",
+      .examples = {"acaa:8", "acaa:64,double=stencil,color=unorm8", "acaa:4,double=saturate", "acaa:8,coverage=shader"},
+      .stressed = {"acaa:8", "acaa:8,double=stencil", "acaa:8,color=unorm8", "acaa:8,color=fp32", "acaa:256"},
+      .make = make_from(
+          AcaaOptions{},
+          [](AcaaOptions& o) -> SpecOptions {
+            return {samples(o.samples, kMaxAcaaSamples, "samples per pixel"),
+                    choice("double", o.double_counting,
+                           {{"none", DoubleCounting::none},
+                            {"stencil", DoubleCounting::stencil},
+                            {"saturate", DoubleCounting::saturate}},
+                           "what keeps surfaces of equal depth from being counted twice"),
+                    choice("color", o.color, {{"unorm8", A::unorm8}, {"fp16", A::fp16}, {"fp32", A::fp32}},
+                           "format of the accumulator"),
+                    beside(
+                        "double=none or double=saturate", [&o] { return o.double_counting != DoubleCounting::stencil; },
+                        choice("coverage", o.visible,
+                               {{"post-z", VisibleSamples::post_z}, {"shader", VisibleSamples::shader}},
+                               "what finds a fragment's visible samples: the depth test, or the shader, on GPUs that "
+                               "test no depth where the colour target has fewer samples"))};
+          },
+          [](const AcaaOptions& o) {
+            return Technique{.framebuffer = acaa_framebuffer(o),
+                             .sampled_at = places_of(msaa_sampling(o.samples)),
+                             .errs_by = error_sources(o),
+                             .rounding_error = rounding_error(o),
+                             .renderer = bind_options(render_acaa, o),
+                             .is_observable = true};
+          })};
 }
 
 }  // namespace beampipe

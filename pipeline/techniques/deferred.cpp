@@ -59,7 +59,8 @@ std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
 Framebuffer deferred_framebuffer() {
   return {.surfaces = {{"depth", "D32F", kSampleDepthBytes},
                        {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
-                       {"color", "RGB16F", kSampleColorBytes}}};
+                       {"color", "RGB16F", kSampleColorBytes}},
+          .translucent = {translucent_layer(1)}};
 }
 
 }  // namespace beampipe

@@ -28,7 +28,8 @@ Framebuffer dvm_framebuffer(const DvmOptions& options) {
                                        {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes, kOutlivesBin},
                                        {"color", "RGB16F", kSampleColorBytes, kOutlivesBin},
                                        {"motion", "RG16F", kMotionBytes, kOutlivesBin},
-                                       {"history", "RGBA16F x 2", 16, kOutlivesBin}}};
+                                       {"history", "RGBA16F x 2", 16, kOutlivesBin}},
+                          .translucent = {translucent_layer(8), {"translucent", "RGBA16F", kLayerBytes, kOutlivesBin}}};
   const auto add = [&](const char* name, const char* format, std::uint32_t bytes) {
     framebuffer.surfaces.push_back({name, format, bytes, kOutlivesBin});
   };

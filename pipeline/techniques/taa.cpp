@@ -44,7 +44,7 @@ Framebuffer taa_framebuffer(TaaShading shading) {
   Framebuffer framebuffer = visibility_framebuffer();
   if (shading == TaaShading::deferred) framebuffer = deferred_framebuffer();
   if (shading == TaaShading::forward)
-    framebuffer.surfaces = {{"depth", "D32F", kSampleDepthBytes}, {"color", "RGB16F", kSampleColorBytes}};
+    framebuffer = {.surfaces = {{"depth", "D32F", kSampleDepthBytes}, {"color", "RGB16F", kSampleColorBytes}}};
   framebuffer.surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
   framebuffer.surfaces.push_back({"history", "RGBA16F x 2", 16, true});  // the last one, and the one being written
   return framebuffer;
@@ -52,12 +52,7 @@ Framebuffer taa_framebuffer(TaaShading shading) {
 
 // Jittering the projection is the same as sampling at another position of the pixel.
 SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
-  const SamplePattern all = standard_pattern(options.samples);
-  const std::size_t i = frame % static_cast<std::uint32_t>(options.samples);
-  SamplePattern one;
-  one.count = 1;
-  one.x[0] = all.x[i], one.y[0] = all.y[i];
-  return one;
+  return only(standard_pattern(options.samples), frame % static_cast<std::uint32_t>(options.samples));
 }
 
 // Draws and shades the bin's pixels, finds how they moved, and returns the picture.

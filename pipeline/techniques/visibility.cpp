@@ -67,6 +67,7 @@ Framebuffer visibility_framebuffer(int samples) {
                        {"visibility", format("R32UI"), n * kVisibilityBytes},
                        {"gbuffer", n == 1 ? "RGBA8 + RGB10A2" : times("(RGBA8 + RGB10A2)", n), n * kGBufferBytes},
                        {"color", format("RGB16F"), n * kSampleColorBytes}},
+          .translucent = {translucent_layer(n)},
           .bin_size = bin_size(samples)};
 }
 

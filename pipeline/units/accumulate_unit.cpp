@@ -1,6 +1,9 @@
 #include "pipeline/units/accumulate_unit.h"
 
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
 #include "pipeline/units/sample_places.h"
+#include "stages/samples/blend.h"
 
 namespace beampipe {
 
@@ -37,7 +40,32 @@ void AccumulateUnit::operator()(const std::vector<SampleFragment>& fragments, co
   if (!bin_.context.shader.is_flat()) places = SamplePlaces(bin_, sampling, ShadeAt::centroid).of(fragments);
   accumulate(fragments, bin_.shader(), places, bin_.tile, stage.timed(), accumulator_);
   for (const SampleFragment& fragment : fragments)
-    blend(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)));
+    access_color(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)), stage);
+}
+
+void AccumulateUnit::blend_translucent(DepthTestUnit& depth_test, const Sampling& central) {
+  if (!bin_.context.has_blending()) return;
+  const std::size_t sample = nearest_to_centre(depth_test.sampling().pattern);
+  if (BinObserver* const observer = bin_.observer()) observer->has_sample_of(central, depth_test.sampling(), sample);
+  const BinStage blending = bin_.stage(StageId::blend);
+  const SamplePlaces places(bin_, central, ShadeAt::centroid);
+  SampleRasterUnit raster(bin_, SampleRasterUnit::Translucent::alone, AlphaCoverage::test);
+  SampleShadeUnit shade(bin_, central, ShadeAt::centroid);
+  std::vector<SampleAccess> accesses;
+  raster.pass(central, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
+    count_by_pixel(fragments, bin_.tile, central.grid, bin_.pixel_counter("fragments"));
+    blend({bin_.triangles(), bin_.tile, central}, bin_.shader(), {fragments, places.of(fragments)},
+          depth_test.surface(), sample, blending.timed(), accumulator_, accesses);
+    depth_test.read_depths(accesses, blending);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      if (accesses[i].passed == 0) continue;
+      access_color(accesses[i].triangle, accesses[i].cell, blending);
+      fragments[left++] = fragments[i];
+    }
+    fragments.resize(left);
+    shade(fragments);
+  });
 }
 
 void AccumulateUnit::finish_round() {
@@ -55,9 +83,9 @@ std::vector<glm::vec4> AccumulateUnit::resolve_accumulator() {
   return resolve(accumulator_, bin_.background(), resolving.timed());
 }
 
-void AccumulateUnit::blend(std::uint32_t triangle, std::uint32_t pixel) {
-  color_.read(triangle, pixel, stage.counters);
-  color_.write(triangle, pixel, stage.counters);
+void AccumulateUnit::access_color(std::uint32_t triangle, std::uint32_t pixel, const BinStage& by) {
+  color_.read(triangle, pixel, by.counters);
+  color_.write(triangle, pixel, by.counters);
 }
 
 // Wherever a sample is still clear.
@@ -65,7 +93,7 @@ void AccumulateUnit::blend_background(const SampleTile& depth) {
   const auto samples = static_cast<std::ptrdiff_t>(depth.samples_per_pixel);
   for (std::uint32_t pixel = 0; pixel < bin_.tile.pixels(); ++pixel) {
     const auto first = depth.depth.begin() + pixel * samples;
-    if (std::find(first, first + samples, kFarDepth) != first + samples) blend(kNoTriangle, pixel);
+    if (std::find(first, first + samples, kFarDepth) != first + samples) access_color(kNoTriangle, pixel, stage);
   }
 }
 

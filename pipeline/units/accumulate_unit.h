@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
+#include "pipeline/units/depth_test_unit.h"
 #include "stages/samples/accumulate.h"
 
 namespace beampipe {
@@ -20,6 +21,12 @@ class AccumulateUnit {
   void operator()(const std::vector<SampleFragment>& fragments, const Sampling& sampling);
   void finish_round();
 
+  // After the last round: the bin's translucent triangles go over the accumulator in the order of draws, at one sample
+  // per pixel, as the talk draws water. `depth_test`: of the last round. The sample that is nearest to the centre is
+  // tested and covered, so that its stored depth is compared with a depth at the same place. `central`: this sample
+  // alone; it must live until the bin is finished. Stages: sample_raster, blend, shade.
+  void blend_translucent(DepthTestUnit& depth_test, const Sampling& central);
+
   // Reads the stencil values of the fragments' samples, and leaves of each fragment the samples that no earlier one has
   // taken. Does nothing without a stencil.
   void test_stencil(std::vector<SampleFragment>& fragments);
@@ -32,7 +39,8 @@ class AccumulateUnit {
   const BinStage stage;
 
  private:
-  void blend(std::uint32_t triangle, std::uint32_t pixel);  // adding to an accumulator reads and writes it
+  // Adding to an accumulator reads and writes it.
+  void access_color(std::uint32_t triangle, std::uint32_t pixel, const BinStage& by);
   void blend_background(const SampleTile& depth);
   void access_stencil(const std::vector<SampleFragment>& fragments, bool write);
 

@@ -97,7 +97,8 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
     fragments.erase(rest, fragments.end());
   }
   const BinStage testing = stage();
-  depth_test_equal(samples(), testing.timed(), surface_, fragments, accesses_);
+  const auto keep_visible = main_stage_ == StageId::shade ? depth_test_in_shader : depth_test_equal;
+  keep_visible(samples(), testing.timed(), surface_, fragments, accesses_);
   memory_.test_equal(accesses_, testing.counters);
   if (!translucent.empty()) blend_fragments(translucent);
 }

@@ -43,6 +43,9 @@ class DepthTestUnit {
 
   // Leaves of each fragment the samples that have the stored depth, and drops fragments without any.
   void test_equal(std::vector<SampleFragment>& fragments);
+
+  // After a depth pre-pass, tests are a part of stage `shade`.
+  void tests_in_shader() { main_stage_ = StageId::shade; }
   const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test
 
   // SampleRasterUnit::pass does it.
@@ -56,6 +59,10 @@ class DepthTestUnit {
 
   // Passes of other stages that read every sample.
   void read_depths(const BinStage& by) { memory_.read_depth(by.counters); }
+  // Or only those that are tested.
+  void read_depths(const std::vector<SampleAccess>& accesses, const BinStage& by) {
+    memory_.test(accesses, by.counters);
+  }
   void read_colors(const BinStage& by) { memory_.read_color(by.counters); }
 
   // The mean colour of each pixel's samples.
@@ -72,7 +79,7 @@ class DepthTestUnit {
   DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes, std::uint32_t color_bytes,
                 SampleMemory::SameValue same_color);
 
-  BinStage stage() const { return bin_.stage(StageId::depth_test, pass_); }
+  BinStage stage() const { return bin_.stage(pass_ == Pass::main ? main_stage_ : StageId::depth_test, pass_); }
   SampledTriangles samples() const { return {bin_.triangles(), bin_.tile, sampling_}; }
   bool hides(const SampleFragment& fragment) const;  // what lies behind it
   void test_opaque(const std::vector<SampleFragment>& fragments);
@@ -81,6 +88,7 @@ class DepthTestUnit {
 
   Bin& bin_;
   Pass pass_;
+  StageId main_stage_ = StageId::depth_test;
   const Sampling& sampling_;
   ShadeAt translucent_at_ = ShadeAt::centre;
   SampleTile surface_;

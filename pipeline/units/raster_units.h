@@ -101,25 +101,35 @@ class SampleRasterUnit {
         translucent_(translucent),
         coverage_(coverage) {}
 
+  // Where no depth is tested, nothing is left out.
+  void keeps_hidden() { keeps_hidden_ = true; }
+
   // One geometry pass: calls body(fragments) for each batch of triangles. Leaves out what lies behind the cells that
   // this pass has closed so far, as a hierarchical depth buffer does. Fragments of cutouts pass the alpha test first.
   // `at`: where fragments are shaded. `surface`: what the body tests them against; its pass ends with this one.
   template <class Body>
   void pass(DepthTestUnit& surface, ShadeAt at, Body&& body) {
-    const Sampling& sampling = surface.sampling();
-    ClosedDepth closed(cells_of(bin_.tile, sampling.grid));
+    pass(surface.sampling(), at, body);
+    surface.end_pass();
+  }
+
+  // The same, whatever the body tests them against. `sampling` must outlive the rendering of the bin.
+  template <class Body>
+  void pass(const Sampling& sampling, ShadeAt at, Body&& body) {
+    std::optional<ClosedDepth> closed;
+    if (!keeps_hidden_) closed.emplace(cells_of(bin_.tile, sampling.grid));
     bin_.starts_pass(pass_, translucent_ == Translucent::alone ? Bin::Geometry::goes_on : Bin::Geometry::read_again);
-    bin_.holds("closed_depth", closed.bytes());
+    if (closed) bin_.holds("closed_depth", closed->bytes());
     const TriangleList& drawn = drawn_triangles();
     if (bin_.observer()) tell_all(drawn, sampling, at);
     for_each_batch(drawn, [&](const TriangleList& batch) {
       fragments_.clear();
-      sample_raster({bin_.triangles(), bin_.tile, sampling}, batch, stage_.timed(), fragments_, &closed);
+      sample_raster({bin_.triangles(), bin_.tile, sampling}, batch, stage_.timed(), fragments_,
+                    closed ? &*closed : nullptr);
       bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
       if (tests_alpha()) test_alpha(sampling, at);
       body(fragments_);
     });
-    surface.end_pass();
   }
 
  private:
@@ -138,6 +148,7 @@ class SampleRasterUnit {
   TriangleList drawn_;  // if not all of the bin's triangles are drawn
   Translucent translucent_;
   AlphaCoverage coverage_;
+  bool keeps_hidden_ = false;
 };
 
 }  // namespace beampipe

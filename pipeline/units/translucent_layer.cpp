@@ -18,13 +18,17 @@ glm::vec4 mean_of_layer(const SampleTile& surface, std::size_t pixel) {
 
 }  // namespace
 
+Surface translucent_layer(std::uint32_t samples) {
+  return {kTranslucentLayer, samples == 1 ? "RGBA16F" : times("RGBA16F", samples), samples * kLayerBytes};
+}
+
 std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, ShadeAt at) {
   if (!bin.context.has_blending()) return {};
   const Sampling& sampling = depth_test.sampling();
   const auto samples = static_cast<std::size_t>(sampling.pattern.count);
   SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::alone, AlphaCoverage::test);
   SampleShadeUnit shade(bin, sampling, at);
-  TileSurface layer(bin.memory(), "translucent_layer", bin.z_order(),
+  TileSurface layer(bin.memory(), kTranslucentLayer, bin.z_order(),
                     {.parts = static_cast<std::uint32_t>(samples), .part_bytes = kLayerBytes});
   depth_test.start_layer(at, kLayerBytes);
   raster.pass(depth_test, at, [&](std::vector<SampleFragment>& fragments) {

@@ -1,5 +1,5 @@
-// Translucent triangles of techniques whose samples have depth but no colours of their own, or whose colours come from
-// a G-buffer: they are drawn last, into a layer that then goes over the picture.
+// Translucent triangles of techniques whose colours come from a G-buffer: they are drawn last, into a layer that then
+// goes over the picture.
 //
 // The layer has a colour and an opacity for each sample of the depth test, so that triangles which meet in a pixel do
 // not blend with each other.
@@ -14,6 +14,9 @@
 namespace beampipe {
 
 inline constexpr std::uint32_t kLayerBytes = 8;  // of a sample: fp16 RGBA
+
+// The layer where each pixel has so many samples.
+Surface translucent_layer(std::uint32_t samples);
 
 // Draws the bin's translucent triangles in the order of draws. They are tested against the depth that opaque triangles
 // left, do not write it, and are shaded in 2x2 quads. Call it when the opaque picture is finished: the depth test's

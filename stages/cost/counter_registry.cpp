@@ -83,14 +83,16 @@ const std::vector<FrameCounterInfo>& frame_counters() {
       {"buffers", "bytes",
        "peak size of every buffer; for a buffer that each bin has, its size in the bin that needs the most"},
       {"peak_bytes_per_pixel", "bytes per pixel",
-       "size of a technique's framebuffer, plus its A-buffer in the frame where that is largest"},
+       "size of a technique's framebuffer, plus its A-buffer and translucent layer in the frame where these are "
+       "largest"},
       {"on_chip_bytes_per_pixel", "bytes per pixel",
        "size of all buffers that a bin has on chip (open pixels, closed depths, queues, windows, batches), each at its "
        "peak in the bin that needs the most, over the pixels of the largest bin"},
       {"off_chip_bytes_per_pixel", "bytes per pixel",
        "peak_bytes_per_pixel: what depends on pixels or fragments and is in memory; geometry and bin lists are apart"},
       {"bin_pixels", "pixels", "pixels of the largest bin"},
-      {"pixel_counters", "as the counter's", "mean and maximum of each pixel counter over the pixels, and the share of pixels where it is not 0"},
+      {"pixel_counters", "as the counter's",
+       "mean and maximum of each pixel counter over the pixels, and the share of pixels where it is not 0"},
       {"saved", "pairs, cells, triangles, tiles or pixels",
        "work that was not done, derived from the counters of the stages: hidden_pairs or hidden_cells, which the "
        "raster stage left out because a triangle in front covers the whole pixel or cell; hidden_triangles, which were "

@@ -1,10 +1,13 @@
 // The colour accumulator of ACAA (Enderton et al. 2015): the weighted sum of the visible fragments of each pixel.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "stages/data/half_bits.h"
 #include "stages/data/pixel_observer.h"
 #include "stages/data/tile.h"
 
@@ -14,6 +17,17 @@ enum class AccumulatorFormat { unorm8, fp16, fp32 };  // of each of four channel
 
 constexpr std::uint32_t accumulator_bytes(AccumulatorFormat format) {
   return format == AccumulatorFormat::unorm8 ? 4 : format == AccumulatorFormat::fp16 ? 8 : 16;
+}
+
+inline float rounded_to(AccumulatorFormat format, float value) {
+  switch (format) {
+    case AccumulatorFormat::unorm8:
+      return std::floor(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f) / 255.0f;
+    case AccumulatorFormat::fp16:
+      return HalfBits(value);
+    default:
+      return value;
+  }
 }
 
 // If two fragments have the same depth at a sample, both pass the depth test. What happens to the second:

@@ -270,12 +270,21 @@ void PixelObserver::composes(std::uint32_t positions, double area, const glm::ve
 void PixelObserver::blends(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color) {
   layers_.resize(history.positions.size());
   for (HistoryTerm& layer : layers_[position]) layer.weight *= 1 - alpha;
+  layers_[position].push_back({blended_fragment(triangle, position), alpha, color});
+}
+
+void PixelObserver::goes_over(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color) {
+  scales(1 - alpha);
+  add_term(blended_fragment(triangle, position), alpha, color);
+}
+
+std::uint32_t PixelObserver::blended_fragment(std::uint32_t triangle, std::size_t position) {
   const std::uint32_t fragment = fragment_of(triangle);
-  layers_[position].push_back({fragment, alpha, color});
   HistoryFragment& noted = history.fragments[fragment];
   noted.fate = Fate::blended;
   noted.mask.resize(history.positions.size());
   noted.mask[position] = true;
+  return fragment;
 }
 
 double PixelObserver::seen_behind_layers(std::size_t position) const {

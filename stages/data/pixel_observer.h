@@ -93,6 +93,9 @@ class PixelObserver {
   // All terms so far change by this factor.
   void scales(double factor);
 
+  // A translucent triangle, which passed the depth test at this position, goes over all that the terms are so far.
+  void goes_over(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color);
+
   // The pixel's only aggregate has changed. `color`: linear RGB times area.
   void composes(std::uint32_t positions, double area, const glm::vec3& color);
 
@@ -119,6 +122,7 @@ class PixelObserver {
     double area, counted;
   };
 
+  std::uint32_t blended_fragment(std::uint32_t triangle, std::size_t position);  // notes that it was blended there
   void take(std::size_t position, std::uint32_t fragment);
   void misses(std::size_t position, std::uint32_t fragment);
   std::size_t surface_at(const WideMask& positions, const glm::vec3& color);

@@ -1,26 +1,13 @@
 #include "stages/samples/accumulate.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "simd/population_count.h"
-#include "stages/data/half_bits.h"
 #include "stages/samples/accumulate_cost.h"
 #include "stages/samples/sample_formulas.h"
 
 namespace beampipe {
 namespace {
-
-float round_to(AccumulatorFormat format, float value) {
-  switch (format) {
-    case AccumulatorFormat::unorm8:
-      return std::floor(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f) / 255.0f;
-    case AccumulatorFormat::fp16:
-      return HalfBits(value);
-    default:
-      return value;
-  }
-}
 
 // Adds a triangle's colour for the samples in `mask`.
 void add(Accumulator& accumulator, std::size_t pixel, std::uint32_t triangle, const glm::vec3& rgb,
@@ -30,7 +17,7 @@ void add(Accumulator& accumulator, std::size_t pixel, std::uint32_t triangle, co
   const float before = sum.a;
   add_weighted(color, bit_count(mask) * accumulator.sample_share,
                accumulator.double_counting == DoubleCounting::saturate, accumulator.limit, &sum.x);
-  for (int c = 0; c < 4; ++c) sum[c] = round_to(accumulator.format, sum[c]);
+  for (int c = 0; c < 4; ++c) sum[c] = rounded_to(accumulator.format, sum[c]);
   if (PixelObserver* const observer = observer_at(accumulator.observers, pixel)) {
     const bool saturates = accumulator.double_counting == DoubleCounting::saturate;
     observer->adds(triangle, saturates ? sum.a - before : bit_count(mask) * accumulator.sample_share, rgb);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stages/cost/counters.h"
+#include "stages/data/accumulator.h"
 #include "stages/data/sample_tile.h"
 #include "stages/surface/surface_shader.h"
 
@@ -20,5 +21,12 @@ struct PlacedFragments {
 // surface.over must have a value for each sample. Replaces `accesses` by one access per fragment.
 void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,
            StageCounters& counters, SampleTile& surface, std::vector<SampleAccess>& accesses);
+
+// The same for an accumulator that has all that is opaque: fragments are tested at one sample of the pixel and, if that
+// passes, go over the whole of it. in.sampling: this sample alone; `sample`: its number in `depth`. Accesses are those
+// of `depth`.
+void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,
+           const SampleTile& depth, std::size_t sample, StageCounters& counters, Accumulator& accumulator,
+           std::vector<SampleAccess>& accesses);
 
 }  // namespace beampipe

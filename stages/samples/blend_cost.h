@@ -13,22 +13,22 @@ Real blended(const Real& source, const Real& there, const Real& alpha) {
   return source + there * (Real(1.0f) - alpha);
 }
 
-// Per sample: its channels, from and to the stored format, which is fp16.
-inline OperationCounts blend_cost(std::uint32_t color_bytes) {
+// Per sample: its channels, from and to the stored format.
+inline OperationCounts blend_cost(std::uint32_t channels) {
   return count_operations([&](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
-    for (std::uint32_t c = 0; c < color_bytes / 2; ++c) converted(blended(one, converted(one), one));
+    for (std::uint32_t c = 0; c < channels; ++c) converted(blended(one, converted(one), one));
   });
 }
 
 // `color_bytes`: of a sample, which is read and written.
-inline void charge_blend(std::uint64_t fragments, const SampleCounts& samples, std::uint32_t color_bytes,
-                         const SamplePattern& pattern, StageCounters& counters) {
+inline void charge_blend(std::uint64_t fragments, const SampleCounts& samples, std::uint32_t channels,
+                         std::uint32_t color_bytes, const SamplePattern& pattern, StageCounters& counters) {
   counters.items_in += samples.tested;
   counters.items_out += samples.passed;
   counters.ops += cell_plane_cost() * fragments;
   counters.ops += sample_depth_cost() * samples.tested;
-  counters.ops += blend_cost(color_bytes) * samples.passed;
+  counters.ops += blend_cost(channels) * samples.passed;
   counters.bytes_read += samples.tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
   counters.bytes_read += samples.passed * color_bytes;
   counters.bytes_written += samples.passed * color_bytes;

@@ -60,6 +60,24 @@ void tell(const std::vector<SampleAccess>& accesses, const Sampling& sampling, c
                          access.passed);
 }
 
+SampleCounts keep_equal(const SampledTriangles& in, const SampleTile& surface, std::vector<SampleFragment>& fragments,
+                        std::vector<SampleAccess>& accesses) {
+  const SampleCounts samples =
+      test_blocks(in, fragments, accesses, [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
+        return depth_equal(items, count, in.sampling.pattern, surface.depth.data(), masks);
+      });
+  for (std::size_t i = 0; i < fragments.size(); ++i) fragments[i].mask = accesses[i].passed;
+  std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
+  return samples;
+}
+
+// Fragments of one follow each other.
+std::uint64_t quads_of(const std::vector<SampleFragment>& fragments) {
+  std::uint64_t quads = 0;
+  for (std::size_t i = 0; i < fragments.size(); ++i) quads += i == 0 || fragments[i].quad != fragments[i - 1].quad;
+  return quads;
+}
+
 }  // namespace
 
 void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& fragments, StageCounters& counters,
@@ -75,15 +93,16 @@ void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& f
 
 void depth_test_equal(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,
                       std::vector<SampleFragment>& fragments, std::vector<SampleAccess>& accesses) {
-  const SamplePattern& pattern = in.sampling.pattern;
   const std::size_t tested = fragments.size();
-  const SampleCounts samples =
-      test_blocks(in, fragments, accesses, [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
-        return depth_equal(items, count, pattern, surface.depth.data(), masks);
-      });
-  for (std::size_t i = 0; i < tested; ++i) fragments[i].mask = accesses[i].passed;
-  std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
-  charge_depth_test(tested, samples, surface.color_bytes, pattern, counters);
+  const SampleCounts samples = keep_equal(in, surface, fragments, accesses);
+  charge_depth_test(tested, samples, surface.color_bytes, in.sampling.pattern, counters);
+}
+
+void depth_test_in_shader(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,
+                          std::vector<SampleFragment>& fragments, std::vector<SampleAccess>& accesses) {
+  const std::uint64_t launched = quads_of(fragments);
+  const SampleCounts samples = keep_equal(in, surface, fragments, accesses);
+  charge_depth_test_in_shader(launched, quads_of(fragments), samples, in.sampling.pattern, counters);
 }
 
 }  // namespace beampipe

@@ -21,4 +21,10 @@ void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& f
 void depth_test_equal(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,
                       std::vector<SampleFragment>& fragments, std::vector<SampleAccess>& accesses);
 
+// The same in the fragment shader, in 2x2 quads: it reads the depths of covered samples as a texture. All invocations
+// of a quad compare all samples, because they run in step. Quads without a visible sample end here, so their lanes are
+// charged; those of the others are charged where they are shaded.
+void depth_test_in_shader(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,
+                          std::vector<SampleFragment>& fragments, std::vector<SampleAccess>& accesses);
+
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// What depth_test and depth_test_equal are charged.
+// What depth_test, depth_test_equal and depth_test_in_shader are charged.
 #pragma once
 
 #include "stages/cost/counting.h"
@@ -18,6 +18,16 @@ inline void charge_depth_test(std::uint64_t fragments, const SampleCounts& sampl
   counters.bytes_written += samples.passed * bytes_written;
   counters.lanes_used += samples.tested;
   counters.lanes_issued += fragments * static_cast<std::uint64_t>(pattern.count);
+}
+
+// `left`: those of the launched quads that have a visible sample.
+inline void charge_depth_test_in_shader(std::uint64_t launched, std::uint64_t left, const SampleCounts& samples,
+                                        const SamplePattern& pattern, StageCounters& counters) {
+  const std::uint64_t invocations = 4 * launched;
+  counters.ops += cell_plane_cost() * invocations;
+  counters.ops += sample_depth_cost() * (invocations * static_cast<std::uint64_t>(pattern.count));
+  counters.bytes_read += samples.tested * kSampleDepthBytes;
+  counters.lanes_issued += 4 * (launched - left);
 }
 
 }  // namespace beampipe

@@ -2,6 +2,7 @@
 
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 
 namespace beampipe::framebuffer_test {
@@ -13,11 +14,12 @@ Trace covered_bin() {
   return pixel_trace(32, 32, {{{{-10, -10, 0.5}, {100, -10, 0.5}, {-10, 100, 0.5}}, glm::vec3(0.5f)}});
 }
 
-std::uint64_t on_chip_bytes(const FrameResult& result) {
+std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
   for (const Buffer& buffer : result.buffers)
-    if (buffer.name == "open_pixels") return buffer.peak_bytes;
+    if (buffer.name == name) return buffer.peak_bytes;
   return 0;
 }
+std::uint64_t on_chip_bytes(const FrameResult& result) { return bytes_of(result, "open_pixels"); }
 
 // One triangle covers all pixels, so there are words of 6 bytes and no records. Words are in blocks of 16 pixels, which
 // have 3 sectors. `compose` writes each back once, and `resolve` reads it.
@@ -88,6 +90,30 @@ TEST(Framebuffer, AnABufferAndWhatLaterFramesReadStayInMemory) {
   EXPECT_EQ(parse_technique("taa:8").framebuffer_bytes_per_pixel(memory), 42u);
   EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(memory), 80u);
   EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(memory), 46u);
+}
+
+// A layer of fp16 RGBA takes 8 bytes per sample. dvm has another one, of the frame: later passes read it.
+TEST(Framebuffer, ALayerOfTranslucentTrianglesIsWhereThePixelsAre) {
+  SurfaceTrace scene(32, 32);
+  const Trace opaque = scene.trace;
+  scene.add_rectangle(3, 4, 20, 20, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  struct Bytes {
+    const char* spec;
+    std::uint64_t layer, of_frame;
+  };
+  for (const auto& [spec, layer, of_frame] :
+       {Bytes{"visibility:8", 8 * 8, 0}, Bytes{"visibility", 8, 0}, Bytes{"deferred", 8, 0}, Bytes{"taa:8", 8, 0},
+        Bytes{"taa:8,shading=forward", 0, 0}, Bytes{"dvm", 8 * 8, 8}, Bytes{"acaa:8", 0, 0}, Bytes{"msaa:8", 0, 0}}) {
+    SCOPED_TRACE(spec);
+    MemoryParameters memory;
+    memory.framebuffer = Place::in_memory;
+    EXPECT_EQ(bytes_of(render_with(spec, scene.trace, memory), kTranslucentLayer), kBinPixels * (layer + of_frame));
+    EXPECT_EQ(bytes_of(render_with(spec, opaque, memory), kTranslucentLayer), 0u);
+    memory.framebuffer = Place::on_chip;
+    const FrameResult on_chip = render_with(spec, scene.trace, memory);
+    EXPECT_EQ(bytes_of(on_chip, kTranslucentLayer), kBinPixels * of_frame);
+    EXPECT_EQ(on_chip_bytes(on_chip), on_chip_bytes(render_with(spec, opaque, memory)) + kBinPixels * layer);
+  }
 }
 
 }  // namespace beampipe::framebuffer_test

@@ -286,7 +286,7 @@ TEST(Surfaces, TranslucentTrianglesBlendSampleBySample) {
   scene.frame().background = glm::vec3(0.0f);
   scene.add_rectangle(-1, -1, 7.5, 17, 0.25, unlit_material({0, 1, 0, 1}));
   scene.add_rectangle(-3, -2, 19, 18, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
-  for (const char* spec : {"msaa:8", "acaa:8", "acaa:32", "dvm"}) {
+  for (const char* spec : {"msaa:8", "visibility:8", "dvm"}) {
     const Image image = rendered(spec, scene.trace).image;
     for (std::size_t y = 0; y < 16; ++y)
       for (std::size_t x = 0; x < 16; ++x)

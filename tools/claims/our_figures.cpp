@@ -65,15 +65,19 @@ const StageCounters* stage_of(const Findings& found, const std::string& spec, St
   return frame ? find_counters(frame->stages, which) : nullptr;
 }
 
-// Modelled milliseconds of these stages, or of all, one stage after the other.
-Number milliseconds(const Findings& found, const std::string& spec, const std::vector<Stage>& stages = {}) {
+std::optional<ModelledTime> time_of(const Findings& found, const std::string& spec) {
   const FrameReport* const frame = frame_of(found, spec);
   if (!frame || !found.report.memory.modelled || found.report.hardware.implementations.empty()) return {};
-  const ModelledTime time =
-      modelled_time(found.report.hardware, found.implementation, frame->stages, frame->open_pixel_bytes());
-  if (stages.empty()) return time.sum_ms;
+  return modelled_time(found.report.hardware, found.implementation, frame->stages, frame->open_pixel_bytes());
+}
+
+// Modelled milliseconds of these stages, or of all, one stage after the other.
+Number milliseconds(const Findings& found, const std::string& spec, const std::vector<Stage>& stages = {}) {
+  const std::optional<ModelledTime> time = time_of(found, spec);
+  if (!time) return {};
+  if (stages.empty()) return time->sum_ms;
   Number sum;
-  for (const StageTime& each : time.stages)
+  for (const StageTime& each : time->stages)
     if (std::find(stages.begin(), stages.end(), each.stage) != stages.end()) sum = sum.value_or(0) + each.ms;
   return sum;
 }
@@ -125,27 +129,37 @@ constexpr const char* kOneSample = "msaa:1,prepass";
 constexpr const char* kMsaa = "msaa:8,color=rgba16f,prepass";
 constexpr const char* kAcaa = "acaa:8";
 
-// DRAM bytes without those of geometry and its attributes, which are the same for all three.
-std::optional<AcaaNumbers> acaa_traffic(const Findings& found) {
+bool moves_framebuffer(const StageCounters& stage) {
+  return stage.stage.id == StageId::depth_test || stage.stage == StageId::accumulate || stage.stage == StageId::resolve;
+}
+bool is_any(const StageCounters&) { return true; }
+
+// DRAM bytes of these stages.
+std::optional<AcaaNumbers> acaa_traffic(const Findings& found, bool (*counts)(const StageCounters&)) {
   const FrameReport *const one = frame_of(found, kOneSample), *const msaa = frame_of(found, kMsaa),
                            *const acaa = frame_of(found, kAcaa);
   if (!found.report.memory.modelled || !one || !msaa || !acaa) return {};
-  const auto bytes = [](const FrameReport& frame) {
+  const auto bytes = [&](const FrameReport& frame) {
     double sum = 0;
-    for (const StageCounters& stage : frame.stages)
-      if (stage.stage.id == StageId::depth_test || stage.stage == StageId::accumulate ||
-          stage.stage == StageId::resolve)
-        sum += static_cast<double>(stage.dram_bytes);
+    for (const StageCounters& stage : frame.stages) sum += counts(stage) ? static_cast<double>(stage.dram_bytes) : 0;
     return sum;
   };
   return AcaaNumbers{bytes(*one), bytes(*msaa), bytes(*acaa)};
 }
 
-std::optional<AcaaNumbers> acaa_times(const Findings& found) {
-  const Number one = milliseconds(found, kOneSample), msaa = milliseconds(found, kMsaa),
-               acaa = milliseconds(found, kAcaa);
+// One stage after the other, or all at once.
+std::optional<AcaaNumbers> acaa_times(const Findings& found, double ModelledTime::*ms) {
+  const std::optional<ModelledTime> one = time_of(found, kOneSample), msaa = time_of(found, kMsaa),
+                                    acaa = time_of(found, kAcaa);
   if (!one || !msaa || !acaa) return {};
-  return AcaaNumbers{*one, *msaa, *acaa};
+  return AcaaNumbers{(*one).*ms, (*msaa).*ms, (*acaa).*ms};
+}
+
+Ours saved(Number (*part)(const std::optional<AcaaNumbers>&), bool (*counts)(const StageCounters&)) {
+  return [=](const Findings& found) { return part(acaa_traffic(found, counts)); };
+}
+Ours saved(Number (*part)(const std::optional<AcaaNumbers>&), double ModelledTime::*ms) {
+  return [=](const Findings& found) { return part(acaa_times(found, ms)); };
 }
 
 // ---- The passes of the DVM article ----
@@ -274,10 +288,13 @@ std::vector<Formula> our_formulas() {
       {"taa.history.30_at_0.05", history(0.05, 30)},
       {"taa.history.45_at_0.05", history(0.05, 45)},
       {"taa.history.60_at_0.05", history(0.05, 60)},
-      {"acaa.added_traffic_saved", [](const Findings& found) { return part_of_added(acaa_traffic(found)); }},
-      {"acaa.traffic_saved", [](const Findings& found) { return part_of_all(acaa_traffic(found)); }},
-      {"acaa.added_ms_saved", [](const Findings& found) { return part_of_added(acaa_times(found)); }},
-      {"acaa.ms_saved", [](const Findings& found) { return part_of_all(acaa_times(found)); }},
+      {"acaa.added_traffic_saved", saved(part_of_added, moves_framebuffer)},
+      {"acaa.traffic_saved", saved(part_of_all, moves_framebuffer)},
+      {"acaa.all_traffic_saved", saved(part_of_all, is_any)},
+      {"acaa.added_ms_saved", saved(part_of_added, &ModelledTime::overlap_ms)},
+      {"acaa.ms_saved", saved(part_of_all, &ModelledTime::overlap_ms)},
+      {"acaa.added_ms_saved_in_turn", saved(part_of_added, &ModelledTime::sum_ms)},
+      {"acaa.ms_saved_in_turn", saved(part_of_all, &ModelledTime::sum_ms)},
       {"ms.casav", ms("casav")},
       {"ms.msaa:32", ms("msaa:32")},
       {"ms.msaa:128", ms("msaa:128")},

@@ -90,7 +90,7 @@ void add_claims_command(CommandLine& line) {
       "msaa:N,prepass,motion,resolve=reinhard (Msaa), taa:8,shading=deferred (Deferred), taa:8 (Visibility) and\n"
       "dvm:clamp=camera (DVM).\n"
       "Their numbers are those of the second frame, which has a history.\n\nExample:\n"
-      "  beampipe make classroom -o classroom.json\n"
+      "  beampipe make classroom --width 1280 --height 720 -o classroom.json\n"
       "  beampipe run classroom.json -t msaa:1,prepass -t msaa:8,color=rgba16f,prepass -t acaa:8 -o out/acaa\n"
       "  beampipe claims out/acaa");
   command.set_work([arguments] { print_claims(*arguments); });

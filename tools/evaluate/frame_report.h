@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/technique.h"
@@ -57,7 +58,14 @@ struct FrameReport {
   std::uint64_t bin_pixels = 0;  // of the largest bin
 
   // What the pixels of a bin take on chip; 0 if they are in memory.
-  double open_pixel_bytes() const;
+  double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }
+
+  // What triangles take in memory beside the framebuffer: the A-buffer, and the layer of translucent ones.
+  double bytes_beside_framebuffer() const {
+    return static_cast<double>(a_buffer_peak_bytes) + peak_bytes_of(kTranslucentLayer);
+  }
+
+  double peak_bytes_of(std::string_view buffer) const;  // 0 if there is none of this name
 };
 
 }  // namespace beampipe

@@ -29,16 +29,13 @@ std::string program_version() { return BEAMPIPE_VERSION; }
 double TechniqueReport::peak_bytes_per_pixel() const {
   double most = 0;
   for (const FrameReport& frame : frames)
-    if (frame.pixels > 0)
-      most = std::max(most, static_cast<double>(frame.a_buffer_peak_bytes) / static_cast<double>(frame.pixels));
+    if (frame.pixels > 0) most = std::max(most, frame.bytes_beside_framebuffer() / static_cast<double>(frame.pixels));
   return framebuffer_bytes_per_pixel + most;
 }
 
-double FrameReport::open_pixel_bytes() const {
-  double bytes = 0;
-  for (const Buffer& buffer : buffers)
-    if (buffer.name == kOpenPixels) bytes = static_cast<double>(buffer.peak_bytes);
-  return bytes;
+double FrameReport::peak_bytes_of(std::string_view name) const {
+  const auto found = std::ranges::find(buffers, name, &Buffer::name);
+  return found == buffers.end() ? 0 : static_cast<double>(found->peak_bytes);
 }
 
 double TechniqueReport::on_chip_bytes_per_pixel() const {

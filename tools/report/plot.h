@@ -45,8 +45,8 @@ struct BarPlot {
   std::vector<double> marks = {};  // a mark on each bar; empty: none
 };
 
-// Memory (bytes of the framebuffer and of the A-buffer at its peak, per pixel) against EMR. MSAA is a line through the
-// rungs of its ladder. Throws ReportError if no technique has an EMR.
+// Memory (bytes per pixel off chip, at their peak) against EMR. MSAA is a line through the rungs of its ladder. Throws
+// ReportError if no technique has an EMR.
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
 // The same with all memory, on chip and off chip. MSAA is a line through those of its rates that were rendered, and

@@ -157,7 +157,11 @@ HardCase with_opacity(float alpha, const std::string& name, const std::string& w
   HardCase result = equal(name, what, front_with(front_material(AlphaMode::blend, alpha)),
                           front_with(is_there ? std::optional(front_material(AlphaMode::opaque, 1)) : std::nullopt));
   // Two roundings where the triangle is opaque and counts as a share, and one below it where it is translucent.
-  if (is_there) result.limits[ErrorSource::sums_in_unorm8] = {3 * kUnorm8Error, "sums are rounded to 8 bits"};
+  if (is_there) {
+    result.limits[ErrorSource::sums_in_unorm8] = {3 * kUnorm8Error, "sums are rounded to 8 bits"};
+    result.limits[ErrorSource::one_translucent_sample] = {[](int samples) { return 1 - 1.0 / samples; },
+                                                          "one sample stands for all others at edges"};
+  }
   return result;
 }
 

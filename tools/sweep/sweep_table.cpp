@@ -61,8 +61,9 @@ std::vector<Column> cell_columns() {
                      [](const Cell& c) { return Json(c.report.pixels_on_chip ? 1 : 0); }});
   columns.push_back({{"on_chip_bytes_per_pixel", "bytes", "all that a bin has on chip, at its peak, over its pixels"},
                      [](const Cell& c) { return Json(c.report.on_chip_bytes_per_pixel()); }});
-  columns.push_back({{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and the A-buffer at its peak"},
-                     [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
+  columns.push_back(
+      {{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and A-buffer and translucent layer at their peaks"},
+       [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
   columns.push_back({{"operations", "", "operations of all stages"},
                      [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.ops.total(); }); }});
   columns.push_back({{"logical_bytes", "bytes", "read and written by all stages, queues included"},

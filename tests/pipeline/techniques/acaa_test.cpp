@@ -6,6 +6,7 @@
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 
 namespace beampipe::acaa_test {
@@ -137,6 +138,34 @@ TEST(Acaa, ReadsDepthTwiceAndOneColor) {
   EXPECT_EQ(stage_of(msaa, "resolve").bytes_read, 64u * 8 * 6);
 }
 
+// Near to far, so that hierarchical depth leaves out the two hidden layers where depth is tested.
+TEST(Acaa, AShaderThatTestsDepthIsLaunchedForHiddenFragments) {
+  const Trace trace =
+      pixel_trace(4, 4, {everywhere(0.3, glm::vec3(1)), everywhere(0.5, glm::vec3(1)), everywhere(0.7, glm::vec3(1))});
+  const FrameResult post_z = render("acaa:8", trace), shader = render("acaa:8,coverage=shader", trace);
+  EXPECT_EQ(post_z.image.rgba, shader.image.rgba);
+  EXPECT_EQ(stage_of(post_z, "sample_raster").items_out, 16u);
+  EXPECT_EQ(stage_of(shader, "sample_raster").items_out, 3u * 16);
+  EXPECT_EQ(stage_of(shader, "prepass_depth_test"), stage_of(post_z, "prepass_depth_test"));
+  EXPECT_THROW(stage_of(shader, "depth_test"), std::runtime_error) << "there is no such stage";
+  const StageCounters shade = stage_of(shader, "shade"), without_test = stage_of(post_z, "shade");
+  EXPECT_EQ(shade.items_in, 16u);
+  EXPECT_EQ(shade.lanes_used, 16u);
+  EXPECT_EQ(shade.lanes_issued, 3u * 16);
+  EXPECT_EQ(shade.bytes_read - without_test.bytes_read, 3u * 16 * 8 * 4) << "8 depths in each of three layers";
+  // Each of 48 invocations computes a plane, once, and 8 depths. As the depth test does for its 16 fragments.
+  EXPECT_EQ((shade.ops.total() - without_test.ops.total()), 3 * stage_of(post_z, "depth_test").ops.total());
+  EXPECT_EQ(stage_of(shader, "accumulate"), stage_of(post_z, "accumulate"));
+  EXPECT_EQ(parse_technique("acaa:8,coverage=shader").framebuffer_bytes_per_pixel(), 40u);
+}
+
+TEST(Acaa, PicturesDoNotDependOnWhatTestsDepth) {
+  const Trace trace = random_trace(60, 40, 300, 5);
+  for (const std::string spec : {"acaa:8", "acaa:32", "acaa:4,double=saturate"})
+    EXPECT_EQ(render(spec + ",coverage=shader", trace).image.rgba, render(spec, trace).image.rgba) << spec;
+  EXPECT_THROW(parse_technique("acaa:8,double=stencil,coverage=shader"), SpecError);
+}
+
 TEST(Acaa, RoundsAreTheSamplesOfMsaa) {
   for (const int samples : {1, 4, 16, 32, 64, 128, 256}) {
     std::vector<std::pair<int, int>> positions;
@@ -156,6 +185,76 @@ TEST(Acaa, RoundsAreTheSamplesOfMsaa) {
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(positions, expected) << samples;
   }
+}
+
+TEST(Acaa, TheLastRoundHasTheSampleNearestToTheCentre) {
+  for (const int samples : {1, 8, 32, 64, 128, 256}) {
+    std::vector<int> least;  // of each round: the squared distance of its nearest sample, in 1/256 px
+    for (const Sampling& round : acaa_rounds(samples)) {
+      least.push_back(2 * 256 * 256);
+      for (std::size_t s = 0; s < static_cast<std::size_t>(round.pattern.count); ++s) {
+        const int x = round.pattern.x[s] - 128, y = round.pattern.y[s] - 128;
+        least.back() = std::min(least.back(), x * x + y * y);
+      }
+    }
+    EXPECT_EQ(least.back(), *std::min_element(least.begin(), least.end())) << samples;
+  }
+}
+
+// Opaque green covers the frame up to the middle of pixel column 7, and 4 of the 8 samples there. A blue sheet lies
+// behind it and a red one in front; they hide half of what is behind them. Sample 0 is the nearest to the centre, at
+// 9/16 of the pixel's width: in column 7 opaque green does not cover it; in column 11 only the red sheet does.
+Trace sheets_around_opaque() {
+  SurfaceTrace scene(16, 16);
+  scene.frame().background = glm::vec3(0.0f);
+  scene.add_rectangle(-1, -1, 7.5, 17, 0.5, unlit_material({0, 1, 0, 1}));
+  scene.add_rectangle(-3, -2, 11.5, 18, 0.75, unlit_material({0, 0, 1, 0.5f}, AlphaMode::blend));
+  scene.add_rectangle(-3, -2, 11.6, 18, 0.25, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  return scene.trace;
+}
+
+TEST(Acaa, TranslucentTrianglesAreDrawnAtOneSample) {
+  const Trace trace = sheets_around_opaque();
+  for (const char* spec : {"acaa:8", "acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:8,color=fp32"}) {
+    const Image image = render(spec, trace).image;
+    for (std::uint32_t y = 0; y < 16; ++y) {
+      for (std::uint32_t x = 0; x < 7; ++x) EXPECT_EQ(rgba_at(image, x, y), glm::vec4(0.5f, 0.5f, 0, 1)) << spec;
+      // Green is 1/2, so green, blue, red and the background show 1/8, 1/4, 1/2 and 1/8.
+      EXPECT_EQ(rgba_at(image, 7, y), glm::vec4(0.5f, 0.125f, 0.25f, 0.875f)) << spec;
+      for (std::uint32_t x = 8; x < 11; ++x) EXPECT_EQ(rgba_at(image, x, y), glm::vec4(0.5f, 0, 0.25f, 0.75f)) << spec;
+      EXPECT_EQ(rgba_at(image, 11, y), glm::vec4(0.5f, 0, 0, 0.5f)) << spec;
+      EXPECT_EQ(rgba_at(image, 12, y), glm::vec4(0)) << spec;
+    }
+  }
+}
+
+// Where the sample lies 1/16 of a pixel from the centre at most, sheets that end 1/8 before the centre, or after it.
+TEST(Acaa, TranslucentTrianglesOfManyRoundsAreDrawnNearTheCentre) {
+  for (const char* spec : {"acaa:32", "acaa:128", "acaa:256"}) {
+    for (const double end : {4.375, 4.625}) {
+      SurfaceTrace scene(8, 8);
+      scene.frame().background = glm::vec3(0.0f);
+      scene.add_rectangle(-1, -1, end, 9, 0.25, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+      EXPECT_EQ(pixel(render(spec, scene.trace).image, 4, 4), glm::vec3(end > 4.5 ? 0.5f : 0.0f, 0, 0)) << spec;
+    }
+  }
+}
+
+// The blue sheet covers the sample in 11 columns, and passes in 4 of them; the red one in 12, and passes in all.
+TEST(Acaa, TranslucentTrianglesNeedNoMemoryOfTheirOwn) {
+  constexpr std::uint64_t kTested = 16 * (11 + 12), kPassed = 16 * (4 + 12);
+  const FrameResult found = render("acaa:8", sheets_around_opaque());
+  for (const Buffer& buffer : found.buffers) EXPECT_NE(buffer.name, kTranslucentLayer);
+  const StageCounters& blend = stage_of(found, "blend");
+  EXPECT_EQ(blend.items_in, kTested);
+  EXPECT_EQ(blend.items_out, kPassed);
+  EXPECT_EQ(blend.bytes_read, kTested * (4 + kSampleFragmentBytes) + kPassed * 8);
+  EXPECT_EQ(blend.bytes_written, kPassed * 8);
+  // In column 9 each sheet reads a depth, and reads and writes the accumulator. In column 3 the one behind does not
+  // pass, and before that green has read 8 depths twice and written them, and was added to the accumulator.
+  const std::vector<float>& bytes = found.pixel_counters.at("bytes");
+  EXPECT_EQ(bytes[16 * 2 + 9], 2 * (4 + 2 * 8));
+  EXPECT_EQ(bytes[16 * 2 + 3], 3 * 8 * 4 + 2 * 8 + 2 * 4 + 2 * 8);
 }
 
 TEST(Acaa, MemoryAtFourK) {

@@ -20,7 +20,7 @@ class ClaimsCommandTest : public ProgramTest {
 
 TEST_F(ClaimsCommandTest, TakesEachNumberFromTheFirstReportThatHasIt) {
   const std::string name = "ACAA, part of MSAA's off-chip traffic that is saved (abstract)";
-  succeed({"make", "classroom", "-o", path("room.json")});
+  succeed({"make", "classroom", "--width", "1280", "--height", "720", "-o", path("room.json")});
   const auto run = [&](std::vector<std::string> options) {
     std::vector<std::string> arguments = {
         "run", path("room.json"), "-t", "msaa:1,prepass", "-t", "msaa:8,color=rgba16f,prepass", "-t", "acaa:8"};

@@ -749,7 +749,7 @@ class ReportPage(PageTest):
 
 class RunPage(PageTest):
     """A run without errors, of a trace that published figures are about."""
-    scene = ["classroom"]
+    scene = ["classroom", "--width", "1280", "--height", "720"]
     command = ["run", "-t", "msaa:1,prepass", "-t", "msaa:8,color=rgba16f,prepass", "-t", "acaa:8"]
 
     def test_has_costs_stages_pictures_and_counters(self):
@@ -768,7 +768,7 @@ class RunPage(PageTest):
     def test_claims_are_those_about_this_trace(self):
         rows = [{key: value for key, (value, _) in row.items()} for row in table_rows(self.browser, "claims")]
         rendered = [claim for claim in self.report["claims"] if claim["kind"] == "rendered"]
-        self.assertEqual(len(rows), 5)
+        self.assertEqual(len(rows), 7)
         self.assertEqual([row["claim"] for row in rows], [claim["name"] for claim in rendered])
         for row, claim in zip(rows, rendered):
             self.assertIn("ACAA", row["claim"])
