@@ -124,6 +124,7 @@ void merges_of_fragments(benchmark::State& state) {
                  .z_min = plane.z - 0.05f,
                  .z_max = plane.z + 0.05f,
                  .color = {0.1f, 0.2f, 0.3f}},
+                0u,
                 0u};
   }
   std::vector<Aggregate> aggregates;
