@@ -37,7 +37,7 @@ OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:s
 LABELS = {"beam": "right offset -0.6,0.6", "beam:order=stream": "left offset 0.6,0.6"}  # where a line is at the right
 EXACT_MASKS = "casav:mask=exact,fuzzy=mix"
 LOSSES = {"as published, best reading": "casav", "masks by edge tests": "casav:mask=exact",
-          "specks beside all that is there": "casav:overlap=unbounded",
+          "specks that take nothing from what is behind": "casav:overlap=unbounded",
           "slabs without thickness": "casav:thickness=none",
           "the depth of each position, no slab": "casav:depths=positions",
           "masks, specks and depths together": "casav:mask=exact,overlap=unbounded,depths=positions",
@@ -58,8 +58,8 @@ READINGS = ["casav", *(f"casav:{reading}" for reading in (
     "order=stream,layers=8")), EXACT_MASKS]
 BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
         for spec in ("beam", "beam:bits=128,pool=30", "beam:bits=64,pool=24")}
-ALL = list(dict.fromkeys(SCENES + FACES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + sum(POOLED.values(), []) + OTHERS + READINGS +
-                         sum(BINS.values(), [])))
+ALL = list(dict.fromkeys(SCENES + FACES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + OTHERS +
+                         READINGS + sum(POOLED.values(), []) + sum(BINS.values(), [])))
 
 
 def sweep(program, models, folder, plan, other_way=False):

@@ -11,7 +11,7 @@ struct MergeRules {
     tiny,        // specks lie beside what is there (ADD), all others are independent (OVER): section 2.2.1
     over,        // all are independent: the formulas of section 2.2 alone
     add,         // all lie beside each other as far as there is room: the other end of slide 12's transition
-    unbounded,   // as `tiny`, but what a speck lies beside keeps all of its area, even where both together exceed the
+    unbounded,   // as `tiny`, but what lies behind a speck keeps all of its area, even where both together exceed the
                  // region: not in the text
     transition,  // slide 12: from ADD to OVER by a fuzziness of |M_A|, alpha_A and "sadp(A, B)", see merge-inl.h
   } overlap = Overlap::tiny;

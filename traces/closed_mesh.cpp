@@ -43,4 +43,12 @@ bool is_closed(const Mesh& mesh) {
   return true;
 }
 
+bool is_closed_body(const Mesh& mesh) {
+  double volume = 0;  // six times
+  for (const glm::uvec3& t : mesh.triangles)
+    volume += glm::dot(glm::dvec3(mesh.positions[t.x]),
+                       glm::cross(glm::dvec3(mesh.positions[t.y]), glm::dvec3(mesh.positions[t.z])));
+  return volume > 0 && is_closed(mesh);
+}
+
 }  // namespace beampipe

@@ -192,7 +192,10 @@ CasavOptions with_rules(CasavOptions options) {
     options.merge.plane = MergeRules::Plane::area;
   }
   if (options.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
-  if (options.depths == Depths::positions) options.merge.partition = MergeRules::Partition::given;
+  if (options.depths == Depths::positions) {
+    options.merge.partition = MergeRules::Partition::given;
+    options.merge.thickness = MergeRules::Thickness::none;
+  }
   return options;
 }
 
@@ -225,6 +228,10 @@ SpecOptions casav_options(CasavOptions& o) {
     return beside(
         "reading=best", [&o] { return o.reading == Reading::best; }, std::move(option));
   };
+  const auto of_slab = [&o](SpecOption option) {
+    return beside(
+        "depths=slab", [&o] { return o.depths == Depths::slab; }, std::move(option));
+  };
   return {
       choice("reading", o.reading, {{"best", Reading::best}, {"literal", Reading::literal}},
              "the best reading of the text, or the literal one: fuzzy=delta, slab=full, plane=area"),
@@ -247,22 +254,24 @@ SpecOptions casav_options(CasavOptions& o) {
               {"unbounded", R::Overlap::unbounded},
               {"transition", R::Overlap::transition}},
              "how coverages combine where masks overlap: ADD for small fragments and OVER for others, OVER, ADD, as "
-             "tiny with sums that are not bounded by the region, or a transition from ADD to OVER"),
+             "tiny but so that a small fragment takes nothing from what lies behind it, or a transition from ADD to "
+             "OVER"),
       choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
              "coverage of an overlapping region: relative to the region's positions, or its area"),
       of_best_reading(choice(
           "fuzzy", o.merge.fuzzy, {{"unite", R::Fuzzy::unite}, {"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
           "coverage within the slab: the union of both, the sum of the blending factors, or between over and "
           "under")),
-      choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
-             "where the slab ends: at its depth range, or at its thickness alone"),
+      of_slab(choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
+                     "where the slab ends: at its depth range, or at its thickness alone")),
       of_best_reading(choice("slab", o.merge.slab, {{"visible", R::Slab::visible}, {"full", R::Slab::full}},
                              "what the slab grows by: a fragment's visible positions, or all of it")),
       of_best_reading(choice("plane", o.merge.plane, {{"visible", R::Plane::visible}, {"area", R::Plane::area}},
                              "how planes are weighted: by what is visible of each, or by coverage")),
-      choice("thickness", o.merge.thickness,
-             {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}, {"none", R::Thickness::none}},
-             "thickness after a merge: the larger one, one that contains all merged fragments, or none"),
+      of_slab(choice(
+          "thickness", o.merge.thickness,
+          {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}, {"none", R::Thickness::none}},
+          "thickness after a merge: the larger one, one that contains all merged fragments, or none")),
       choice("storage", o.storage,
              {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}, {"float32", CasavStorage::float32}},
              "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
@@ -286,8 +295,8 @@ TechniqueKind casav_kind() {
           .examples = {"casav", "casav:mask=exact", "casav:storage=text", "casav:reading=literal",
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,fuzzy=mix,extents=slab,slab=full,"
                        "plane=area,thickness=containing",
-                       "casav:mask=exact,depths=positions,overlap=unbounded,thickness=none", "casav:order=near-first",
-                       "casav:order=stream,layers=2"},
+                       "casav:thickness=none", "casav:mask=exact,depths=positions,overlap=unbounded",
+                       "casav:order=near-first", "casav:order=stream,layers=2"},
           .stressed = {"casav", "casav:reading=literal", "casav:storage=text", "casav:storage=float32"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }

@@ -77,6 +77,7 @@ inline OperationCounts casav_merges_cost(const MergeWork& work, const MergeRules
     if (ranged && !given)
       static_cast<void>(is_before(in.surface, in.surface)), static_cast<void>(is_after(in.surface, in.surface));
     static_cast<void>((mask & mask & ~mask & ~(mask & mask)) != mask);
+    if (given) ~mask;
     select(true, one, one);
     visible_parts(in, in.surface, OverlapParts<Float, Mask>{mask, mask, bit_count(mask), one, one}, rules);
     if (transition) fuzziness_of(in.surface, in.surface, one, mask);

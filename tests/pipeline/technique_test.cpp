@@ -52,7 +52,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
   const std::string of_beam = "; it has bits, pool, at, bin and order";
   const std::string of_casav =
-      "; it has reading, mask, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, order "
+      "; it has reading, mask, depths, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, order "
       "and layers";
   const std::string of_dvm = "; it has blend, material, clamp and extra";
   const std::map<std::string, std::vector<const char*>> specs_of_error = {
@@ -75,7 +75,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"beam has no option '64'" + of_beam, {"beam:64"}},
       {"beam has no option 'mask'" + of_beam, {"beam:mask=fast"}},
       {"beam has no option 'fuzzy'" + of_beam, {"beam:fuzzy=mix"}},
-      {"beam:order=sorted has no option 'mask'; it has bits, storage and order",
+      {"beam:order=sorted has no option 'mask'; it has bits, storage, window and order",
        {"beam:order=sorted,bits=32,mask=exact"}},
       {"bits must be 32 or 256", {"beam:order=sorted,bits=64", "beam:order=sorted,bits="}},
       {"storage must be packed or float32", {"beam:order=sorted,storage=text"}},
@@ -94,7 +94,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"casav has no option 'bits'" + of_casav, {"casav:bits=64"}},
       {"mask must be table or exact", {"casav:mask=fast"}},
       {"tiny must be 1 or 3", {"casav:tiny=2"}},
-      {"overlap must be tiny, over, add or transition", {"casav:overlap=none"}},
+      {"overlap must be tiny, over, add, unbounded or transition", {"casav:overlap=none"}},
       {"regional must be local or area", {"casav:regional=global"}},
       {"'slab' is there twice", {"casav:slab=visible,slab=full"}},
       {"z3 has no option 'layers'; it has shape", {"z3:layers=3"}},

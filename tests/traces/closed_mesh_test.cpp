@@ -28,6 +28,16 @@ TEST(ClosedMesh, RunsInOppositeDirectionsAlongAnEdge) {
   EXPECT_TRUE(is_closed(mesh));
 }
 
+TEST(ClosedMesh, OfABodyTheOutsideIsInFront) {
+  Mesh mesh = tetrahedron();
+  EXPECT_TRUE(is_closed_body(mesh));
+  for (glm::vec3& p : mesh.positions) p -= 5.0f;  // wherever it is
+  EXPECT_TRUE(is_closed_body(mesh));
+  for (glm::uvec3& t : mesh.triangles) std::swap(t.x, t.y);
+  EXPECT_FALSE(is_closed_body(mesh));
+  EXPECT_FALSE(is_closed_body(Mesh{}));
+}
+
 TEST(ClosedMesh, LooksAtPositionsAndNotAtVertices) {
   Mesh mesh = tetrahedron();
   const std::vector<glm::vec3> shared = mesh.positions;

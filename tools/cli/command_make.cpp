@@ -34,11 +34,20 @@ struct MakeArguments {
   std::string cull;
 };
 
+bool hides_backs(const Mesh& mesh, const std::vector<Material>& materials) {
+  const auto is_opaque = [&](std::uint32_t material) {
+    return material == kNoMaterial || materials.at(material).alpha_mode == AlphaMode::opaque;
+  };
+  return std::ranges::all_of(mesh.materials, is_opaque) && is_closed_body(mesh);
+}
+
 // Of all draws, whose culling nothing else decides.
 void set_culling(const std::string& cull, Trace& trace) {
   for (Frame& frame : trace.frames)
-    for (Draw& draw : frame.draws)
-      draw.cull = cull == "back" || (cull == "closed" && is_closed(trace.meshes[draw.mesh])) ? Cull::back : Cull::none;
+    for (Draw& draw : frame.draws) {
+      const bool culls = cull == "back" || (cull == "closed" && hides_backs(trace.meshes[draw.mesh], trace.materials));
+      draw.cull = culls ? Cull::back : Cull::none;
+    }
 }
 
 Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
@@ -139,8 +148,8 @@ void add_make_command(CommandLine& line, InterruptGate& gate) {
 
   command
       .add("--cull", arguments->cull,
-           "which back faces are not drawn: none, those of closed meshes, or all (back) (default: closed for scenes, "
-           "none for an .obj)")
+           "which back faces are not drawn: none, those of closed opaque meshes, for a camera outside of them, or all "
+           "(back) (default: closed for scenes, none for an .obj)")
       .one_of({"none", "closed", "back"});
 
   Command scene = command.add_group("Procedural scenes");

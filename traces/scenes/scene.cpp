@@ -42,7 +42,7 @@ Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<M
     Draw draw;
     draw.mesh = i;
     draw.shading = Shading::lambert;
-    if (is_closed(meshes[i])) draw.cull = Cull::back;
+    if (is_closed_body(meshes[i])) draw.cull = Cull::back;
     frame.draws.push_back(draw);
   }
   trace.meshes = std::move(meshes);

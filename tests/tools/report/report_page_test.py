@@ -366,7 +366,7 @@ class ReportPage(PageTest):
                                       ".map((row) => [...row.children].map((each) => each.textContent))"))
         self.assertEqual(found["picture"], "96 × 54 pixels, 2 frames")
         [triangles] = {frame["triangles"] for frame in self.report["frames"]}
-        self.assertEqual(found["scene"].replace("\u202f", ""), f"{triangles} triangles, 2 draws, 1 light")
+        self.assertEqual(found["scene"].replace("\u202f", ""), f"{triangles} triangles, 3 draws, 1 light")
         self.assertEqual(found["command"], f"beampipe compare {self.trace} -t {' '.join(TECHNIQUES)} --ladder 1,8 --causes")
         self.assertEqual(found["hardware"], "Titan V class, 1455 MHz")
         self.assertRegex(found["memory system"], r"^L2 4\.5 MiB, .*compression on")

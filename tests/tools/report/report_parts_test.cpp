@@ -144,8 +144,8 @@ TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
 
 TEST_F(ReportParts, CsvQuotesWhatNeedsIt) {
   EXPECT_EQ(csv_text(named(report_tables(read()), "claims")),
-            "claim,unit,published_low,published_high,ours,difference,source,command\r\n"
-            "\"beam, \"\"RGB16F\"\"\",bytes,36,42,42,0,slide 30,beampipe report DIR\r\n");
+            "claim,unit,published_low,published_high,ours,per_cent,holds,source,command\r\n"
+            "\"beam, \"\"RGB16F\"\"\",bytes,36,42,42,0,true,slide 30,beampipe report DIR\r\n");
 }
 
 TEST_F(ReportParts, RooflineLiesUnderTheRoof) {

@@ -3,7 +3,7 @@
 // Whole numbers with groups of three digits, others with four digits, a dash for nothing.
 function numberText(value) {
   if (value === null || value === undefined) return "–";
-  if (typeof value === "string") return value;
+  if (typeof value !== "number") return String(value);
   const rounded = Number.isInteger(value) ? value : Number(value.toPrecision(4));
   return Number.isInteger(rounded) ? rounded.toLocaleString("en").replaceAll(",", "\u202f") : String(rounded);
 }

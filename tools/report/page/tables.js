@@ -3,7 +3,7 @@
 
 function compareCells(a, b) {
   if (a === null || b === null) return (a === null) - (b === null);  // empty cells come last
-  return typeof a === "number" ? a - b : a.localeCompare(b);
+  return typeof a === "number" ? a - b : String(a).localeCompare(String(b));
 }
 
 function sortTable(heads, body, rows, column) {
@@ -21,7 +21,7 @@ function sortTable(heads, body, rows, column) {
 function columnFormats(table) {
   const rows = table.rows.filter((row) => row[0] !== "reference");
   return table.columns.map((column, i) => {
-    const cells = rows.map((row) => row[i]), isWord = cells.some((cell) => typeof cell === "string");
+    const cells = rows.map((row) => row[i]), isWord = cells.some((cell) => cell !== null && typeof cell !== "number");
     const unit = column.unit || (isWord ? "" : "number");
     return { isWord, ...readableUnit(unit, d3.max(cells.filter((cell) => typeof cell === "number"), Math.abs) ?? 0) };
   });
@@ -32,7 +32,7 @@ function makeRow(table, formats, cells) {
   cells.forEach((cell, i) => {
     const column = table.columns[i], { size, unit } = formats[i];
     const shown = make(i === 0 ? "th" : "td", {
-      class: typeof cell === "string" ? "word" : "number",
+      class: cell === null || typeof cell === "number" ? "number" : "word",
       "data-key": column.key,
       "data-value": cell ?? "",
       "data-title": column.title,
