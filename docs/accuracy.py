@@ -203,6 +203,13 @@ def print_results(table):
         *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), f"{rmse_ratio(table, spec):.2f}"])
 
 
+def print_readings(table):
+    pixels = math.prod(map(int, table.size.split("x")))
+    print_groups(table, READINGS, ["off chip", "operations per pixel", "RMSE ÷ that of `msaa:256`"], lambda spec: [
+        f"{bytes_of(table, spec)[1]:.0f}", f"{mean(table.values('operations', spec)) / pixels:.0f}",
+        f"{rmse_ratio(table, spec):.1f}"])
+
+
 def print_bins(table):
     """The specs have bins of 32 pixels, and those of 16 and 8 that follow."""
     print_head("technique", *(f"`bin={bin}`: {title}" for bin in (32, 16, 8) for title in ("geometric mean", "least")))
@@ -238,7 +245,7 @@ plot {', '.join(plots)}
 
 TABLES = {"losses": print_losses,
           "results": print_results, "steps": print_steps, "density": print_density, "bins": print_bins,
-          "capacities": print_capacities, "pools": print_pools, "readings": lambda table: print_groups(table, READINGS)}
+          "capacities": print_capacities, "pools": print_pools, "readings": print_readings}
 
 
 def main(arguments):
