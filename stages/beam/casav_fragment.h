@@ -19,7 +19,8 @@ inline MergeFragment merge_fragment(const Fragment& fragment) {
            .z_min = fragment.z_min,
            .z_max = fragment.z_max,
            .color = {color.r, color.g, color.b}},
-          fragment.tiny ? ~0u : 0u, 0u};
+          fragment.tiny ? ~0u : 0u,
+          0u};
 }
 
 // Tells that the aggregate at `place` and what lies behind it become `together`. A merge by the rules is linear in
@@ -49,7 +50,8 @@ inline FragmentOf<Counted<float>, Counted<std::uint32_t>> counted_fragment(Opera
            .z_min = one,
            .z_max = one,
            .color = {one, one, one}},
-          all, all};
+          all,
+          all};
 }
 
 // How many numbers of a stored aggregate must be converted to float32.

@@ -52,7 +52,8 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
   const std::string of_beam = "; it has bits, pool, at, bin and order";
   const std::string of_casav =
-      "; it has reading, mask, depths, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, order "
+      "; it has reading, mask, depths, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, "
+      "order "
       "and layers";
   const std::string of_dvm = "; it has blend, material, clamp and extra";
   const std::map<std::string, std::vector<const char*>> specs_of_error = {
