@@ -247,6 +247,7 @@ for mutant in "${mutants[@]}"; do
   [[ $file == stages/* ]] && folders=(stages pipeline)
   [[ $file == pipeline/* ]] && folders=(pipeline)
   [[ $file == tools/* ]] && folders=(tools)
+  [[ $file == traces/* ]] && folders=(traces)
   for folder in "${folders[@]}"; do
     if ! cmake --build "$build" --target "${folder}_tests" >/dev/null 2>&1; then
       noticed="the compiler"  # of a build with warnings as errors

@@ -53,8 +53,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string of_beam = "; it has bits, pool, at, bin and order";
   const std::string of_casav =
       "; it has reading, mask, depths, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, "
-      "order "
-      "and layers";
+      "order and layers";
   const std::string of_dvm = "; it has blend, material, clamp and extra";
   const std::map<std::string, std::vector<const char*>> specs_of_error = {
       {names, {"", "wireframe"}},
