@@ -184,7 +184,8 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
   });
 }
 
-// The literal reading sets three of the rules, exact masks are compared exactly, and so are kept depths.
+// The literal reading sets three of the rules. Depths are compared at each position where masks are exact or depths are
+// kept; with kept depths nothing asks how thick the slab is.
 CasavOptions with_rules(CasavOptions options) {
   if (options.reading == Reading::literal) {
     options.merge.fuzzy = MergeRules::Fuzzy::delta;

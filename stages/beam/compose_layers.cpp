@@ -10,6 +10,9 @@ namespace {
 
 bool is_empty(const Aggregate& aggregate) { return aggregate.mask == 0; }
 
+// An aggregate that is merged into a nearer one, as a fragment is.
+MergeFragment as_fragment(const Aggregate& aggregate) { return {aggregate, 0u, 0u}; }
+
 // Merges what lies farther away into what is nearer.
 Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const CasavMerging& merging, MergeWork& work) {
   Aggregate result = nearer;
@@ -56,7 +59,7 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, StageCounters&
     }
     std::size_t count = 0, place = 0;
     for (; count < layers_ && !is_empty(layers[count]); ++count) {
-      all[count] = {layers[count], 0u, 0u};
+      all[count] = as_fragment(layers[count]);
       place += layers[count].z_min <= incoming.surface.z_min;
     }
     std::move_backward(all.begin() + static_cast<std::ptrdiff_t>(place),
@@ -72,7 +75,7 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, StageCounters&
         if (const float gap = depth_between(all[k].surface, all[k + 1].surface); gap < least) least = gap, closest = k;
       const Aggregate together = merged(all[closest].surface, all[closest + 1], merging_, work.merging);
       if (observer) tell_merge(closest, all[closest].surface, all[closest + 1], stored(together), merging_, *observer);
-      all[closest] = {together, 0u, 0u};
+      all[closest] = as_fragment(together);
       all.erase(all.begin() + static_cast<std::ptrdiff_t>(closest) + 1);
       all.emplace_back();
       --count;
@@ -92,8 +95,8 @@ std::vector<Aggregate> AggregateLayers::finish(StageCounters& counters) const {
     if (observer) observer->arrivals_end();
     for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k) {
       const Aggregate nearer = pixel;
-      pixel = merged(nearer, {aggregates_[first + k], 0u, 0u}, merging_, work.merging);
-      if (observer) tell_merge(0, nearer, {aggregates_[first + k], 0u, 0u}, pixel, merging_, *observer);
+      pixel = merged(nearer, as_fragment(aggregates_[first + k]), merging_, work.merging);
+      if (observer) tell_merge(0, nearer, as_fragment(aggregates_[first + k]), pixel, merging_, *observer);
     }
     if (observer) observer->finishes_aggregate();
     work.finished += !is_empty(pixel);

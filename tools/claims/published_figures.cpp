@@ -52,61 +52,62 @@ PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   return figure;
 }
 
-void expect_publication(const JsonCursor& publication) {
+// Calls read(publication) with what the file's text says.
+template <class Read>
+void read_publication(const std::string& text, const std::string& file, Read&& read) {
+  const Json json = parse_json_text(text, file);
+  const JsonCursor publication(json, file);
   publication.expect_keys({"beampipe_claims", "publication", "groups", "statements"});
   publication["beampipe_claims"].integer(1, 1);
+  read(publication);
+}
+
+// What all files have that are built in, in their order.
+template <class Item>
+std::vector<Item> of_all_files(std::vector<Item> (*parse)(const std::string& text, const std::string& file)) {
+  std::vector<Item> all;
+  for (const PublishedText& publication : kPublishedTexts)
+    for (Item& item : parse(publication.text, publication.file)) all.push_back(std::move(item));
+  return all;
 }
 
 }  // namespace
 
 std::vector<PublishedFigure> parse_published_figures(const std::string& text, const std::string& file) {
-  const Json json = parse_json_text(text, file);
-  const JsonCursor publication(json, file);
-  expect_publication(publication);
   std::vector<PublishedFigure> figures;
-  for (const JsonCursor& group : publication["groups"].elements()) {
-    group.expect_keys({"topic", "source", "trace", "unit", "command", "remark", "reason", "claims"});
-    for (const JsonCursor& claim : group["claims"].elements()) {
-      figures.push_back(read_claim(claim, group));
-      figures.back().topic = group["topic"].choice({"design", "traffic", "time", "quality", "passes"});
-      figures.back().by_definition = figures.back().topic == 0;
-      if (!figures.back().by_definition) figures.back().trace = group["trace"].string();
+  read_publication(text, file, [&](const JsonCursor& publication) {
+    for (const JsonCursor& group : publication["groups"].elements()) {
+      group.expect_keys({"topic", "source", "trace", "unit", "command", "remark", "reason", "claims"});
+      for (const JsonCursor& claim : group["claims"].elements()) {
+        figures.push_back(read_claim(claim, group));
+        figures.back().topic = group["topic"].choice({"design", "traffic", "time", "quality", "passes"});
+        figures.back().by_definition = figures.back().topic == 0;
+        if (!figures.back().by_definition) figures.back().trace = group["trace"].string();
+      }
     }
-  }
+  });
   return figures;
 }
 
 std::vector<Statement> parse_published_statements(const std::string& text, const std::string& file) {
-  const Json json = parse_json_text(text, file);
-  const JsonCursor publication(json, file);
-  expect_publication(publication);
   std::vector<Statement> statements;
-  for (const JsonCursor& statement : publication["statements"].elements()) {
-    statement.expect_keys({"source", "text", "answer"});
-    const std::string answer = statement["answer"].string();
-    if (!answer.starts_with("works: ") && !answer.starts_with("partly: ") && !answer.starts_with("not here: "))
-      statement["answer"].fail("works: ..., partly: ... or not here: ...", answer);
-    statements.push_back(
-        {publication["publication"].string(), statement["source"].string(), statement["text"].string(), answer});
-  }
+  read_publication(text, file, [&](const JsonCursor& publication) {
+    for (const JsonCursor& statement : publication["statements"].elements()) {
+      statement.expect_keys({"source", "text", "answer"});
+      const std::string answer = statement["answer"].string();
+      if (!answer.starts_with("works: ") && !answer.starts_with("partly: ") && !answer.starts_with("not here: "))
+        statement["answer"].fail("works: ..., partly: ... or not here: ...", answer);
+      statements.push_back(
+          {publication["publication"].string(), statement["source"].string(), statement["text"].string(), answer});
+    }
+  });
   return statements;
 }
 
-std::vector<Statement> published_statements() {
-  std::vector<Statement> all;
-  for (const PublishedText& publication : kPublishedTexts) {
-    const auto statements = parse_published_statements(publication.text, publication.file);
-    all.insert(all.end(), statements.begin(), statements.end());
-  }
-  return all;
-}
+std::vector<Statement> published_statements() { return of_all_files(parse_published_statements); }
 
 std::vector<PublishedFigure> published_figures() {
-  std::vector<PublishedFigure> all;
-  for (const PublishedText& publication : kPublishedTexts) {
-    const auto figures = parse_published_figures(publication.text, publication.file);
-    all.insert(all.end(), figures.begin(), figures.end());
-  }
+  std::vector<PublishedFigure> all = of_all_files(parse_published_figures);
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.topic < b.topic; });
   return all;
 }
