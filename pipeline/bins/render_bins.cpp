@@ -161,6 +161,7 @@ class FrameRecorder {
         texture_pass_starts_(trace_ ? texture_passes_.size() : 0) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, {}};
+    result_.bin_operations.resize(bins);
     for (const Stage stage : stages) result_.stages.push_back(StageCounters{stage});
   }
 
@@ -180,12 +181,12 @@ class FrameRecorder {
     if (!texture_passes_.empty()) texture_passes_[index] = bin.take_texture_passes();
     if (!texture_pass_starts_.empty()) texture_pass_starts_[index] = bin.texture_pass_starts();
     if (trace_) trace_->add(*bin.dram_log(), first_pass_, index);
-    add(bin, bin.tile, true, true);
+    add(bin, bin.tile, index, true, true);
   }
 
   // Thread-safe. Adds for `tile` what a bin of the same size recorded, which has no triangles either.
-  void add_empty(const EmptyBin& empty, const Tile& tile) {
-    add(empty.bin, tile, empty.has_counts, empty.color != color_);
+  void add_empty(const EmptyBin& empty, const Tile& tile, std::size_t index) {
+    add(empty.bin, tile, index, empty.has_counts, empty.color != color_);
   }
 
   FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
@@ -204,7 +205,8 @@ class FrameRecorder {
 
  private:
   // `has_counts`, `has_picture`: are the pixel counters and the picture other than what the frame starts with?
-  void add(const Bin& bin, const Tile& tile, bool has_counts, bool has_picture) {
+  void add(const Bin& bin, const Tile& tile, std::size_t index, bool has_counts, bool has_picture) {
+    for (const StageCounters& stage : bin.stages()) result_.bin_operations[index] += stage.ops.total();
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
@@ -325,7 +327,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;
       if (is_shared(i)) {
         const Tile& tile = grid.tiles[band.first + i];
-        recorder.add_empty(empty_bins.like(tile), tile);
+        recorder.add_empty(empty_bins.like(tile), tile, band.first + i);
         return;
       }
       Bin bin(context, grid.tiles[band.first + i], lists[i], stages, framebuffer);

@@ -28,14 +28,22 @@ std::uint32_t Framebuffer::on_chip_bytes_per_pixel() const {
   return bytes;
 }
 
+bool Framebuffer::wants_chip(const MemoryParameters& memory) const {
+  return memory.framebuffer.value_or(place) == Place::on_chip;
+}
+
 int Framebuffer::bin_size_on(const MemoryParameters& memory) const {
-  return std::min(bin_size, static_cast<int>(memory.bin_pixels));
+  int side = std::min(bin_size, static_cast<int>(memory.bin_pixels));
+  if (!wants_chip(memory)) return side;
+  const std::uint64_t all_bins = std::uint64_t{on_chip_bytes_per_pixel()} * memory.bins_per_core;
+  const auto pixels = [&] { return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side); };
+  while (side > kLeastBinSize && all_bins * pixels() > memory.on_chip_bytes) side /= 2;
+  return side;
 }
 
 bool Framebuffer::is_on_chip(const MemoryParameters& memory) const {
   const auto side = static_cast<std::uint64_t>(bin_size_on(memory));
-  return memory.framebuffer.value_or(place) == Place::on_chip &&
-         on_chip_bytes_per_pixel() * side * side <= memory.on_chip_bytes;
+  return wants_chip(memory) && on_chip_bytes_per_pixel() * side * side <= memory.on_chip_bytes;
 }
 
 std::vector<Surface> Framebuffer::in_memory(const MemoryParameters& memory) const {

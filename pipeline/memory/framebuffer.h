@@ -30,13 +30,14 @@ struct Framebuffer {
   Place place = Place::in_memory;  // on the machine that the technique is made for
   int bin_size = kBinSize;         // the technique's pixels on each side of a bin, even
 
-  // That, or those of the memory system if they are smaller.
+  // That, or those of the memory system if they are smaller. Where pixels are on chip, half of that, and so on, until
+  // as many bins fit as a core works on at a time, or bins are as small as they may be.
   int bin_size_on(const MemoryParameters& memory) const;
 
   // With all surfaces of a frame with translucent triangles.
   Framebuffer with_translucent() const;
 
-  // Are the pixels of a bin on chip while it is drawn? Only if all that they store fits there.
+  // Are the pixels of a bin on chip while it is drawn? Only if all that the pixels of one bin store fits there.
   bool is_on_chip(const MemoryParameters& memory) const;
 
   // The surfaces that are in memory: all of them, or, where pixels are on chip, the picture and what outlives the bin.
@@ -44,6 +45,9 @@ struct Framebuffer {
 
   // What a pixel takes on chip where pixels are on chip.
   std::uint32_t on_chip_bytes_per_pixel() const;
+
+ private:
+  bool wants_chip(const MemoryParameters& memory) const;
 };
 
 std::uint32_t bytes_per_pixel(const std::vector<Surface>& surfaces);

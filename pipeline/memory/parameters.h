@@ -53,6 +53,10 @@ inline constexpr std::uint32_t kPictureBytes = 6;  // per pixel of a finished pi
 // TechPowerUp reports: "16x16 and 32x32 pixels are the usual tile sizes", chosen by what a pixel takes.
 inline constexpr int kBinSize = 32;
 
+// Bins are not made smaller than that to fit on chip. Apple's and Arm's GPUs go no further than a quarter of their
+// usual tiles of 32 x 32 and 16 x 16 pixels.
+inline constexpr int kLeastBinSize = 8;
+
 // The smallest sector, and that of the textures' layout.
 inline constexpr std::uint32_t kLeastSectorBytes = 32;
 
@@ -91,10 +95,11 @@ struct MemoryParameters {
   // Where every technique keeps its pixels; nothing: each on the machine that it is made for (Framebuffer::place).
   std::optional<Place> framebuffer;
 
-  // The memory on chip for the pixels of a bin. If they do not fit, they are kept in memory. The default is what one
-  // class of surfaces has for its caches above, 24 units of 16 KiB, because the model draws one bin at a time with the
-  // caches of the whole chip.
-  std::uint32_t on_chip_bytes = 24 * 16 * 1024;
+  // The memory that a core has on chip for the pixels of bins, how many bins it works on at a time, and how many cores
+  // there are. Where pixels are on chip, bins are made so small that as many fit (Framebuffer::bin_size_on). Source: 96
+  // KB of shared memory in each of the 80 multiprocessors of a Titan V (Volta whitepaper). Two bins are a choice: one
+  // is composed while the next one is fetched.
+  std::uint32_t on_chip_bytes = 96 * 1024, bins_per_core = 2, cores = 80;
 
   // The most pixels on each side of a bin, at most kBinSize. Techniques whose bins are smaller keep them.
   std::uint32_t bin_pixels = kBinSize;

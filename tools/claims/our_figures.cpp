@@ -68,7 +68,7 @@ const StageCounters* stage_of(const Findings& found, const std::string& spec, St
 std::optional<ModelledTime> time_of(const Findings& found, const std::string& spec) {
   const FrameReport* const frame = frame_of(found, spec);
   if (!frame || !found.report.memory.modelled || found.report.hardware.implementations.empty()) return {};
-  return modelled_time(found.report.hardware, found.implementation, frame->stages, frame->open_pixel_bytes());
+  return modelled_time(found.report.hardware, found.implementation, frame->work());
 }
 
 // Modelled milliseconds of these stages, or of all, one stage after the other.

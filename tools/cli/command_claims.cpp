@@ -41,14 +41,13 @@ void print_statements(bool as_json) {
 
 void print_claims(const ClaimsArguments& arguments) {
   if (arguments.statements) return print_statements(arguments.json);
-  const std::vector<Hardware> all = read_hardware(arguments.hardware);
-  if (all.size() > 1) throw UsageError("--hardware " + arguments.hardware.hardware + ": expected one");
+  const Hardware hardware = read_hardware(arguments.hardware);
   std::vector<Claim> claims = all_claims({});
   for (const std::string& folder : arguments.folders) {
     const ReportFile report = read_report(folder);
     read_from_report(report.folder, [&] {
       if (arguments.hardware != HardwareOptions{})
-        for (const Claim& claim : answered_claims(remodelled(report.json, all)))
+        for (const Claim& claim : answered_claims(remodelled(report.json, &hardware)))
           take(claim_form().write(claim), claims);
       const Json answered = report.json.value("claims", Json::array());
       for (const Json& found : answered.elements()) take(found, claims);
@@ -63,7 +62,7 @@ void print_claims(const ClaimsArguments& arguments) {
     return;
   }
   if (!arguments.hardware.hardware.empty())
-    std::cout << "Times are modelled with " << all.front().name << ", also where a row names another GPU.\n\n";
+    std::cout << "Times are modelled with " << hardware.name << ", also where a row names another GPU.\n\n";
   std::cout << claims_text(claims);
   if (!arguments.all) std::cout << "The others, with the commands that make their reports: beampipe claims --all\n";
 }
@@ -75,7 +74,7 @@ void add_claims_command(CommandLine& line) {
   Command command = line.add_command("claims", "Compare the numbers that publications state with ours");
   command.add("DIR", arguments->folders,
               "folders that run or compare wrote; they hold the numbers that need rendering");
-  add_hardware_options(command, arguments->hardware, HardwareCount::one);
+  add_hardware_options(command, arguments->hardware);
   command.add_flag("--all", arguments->all, "also list claims for which there is no number of ours");
   command.add_flag("--statements", arguments->statements,
                    "list instead what the publications say in words, and whether it can be had here");

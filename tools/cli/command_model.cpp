@@ -1,13 +1,14 @@
-// beampipe model: the modelled times of finished runs, on other hardware or at other costs of shading.
+// beampipe model: the modelled times of finished runs, with other rates or at other costs of shading.
 
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "tools/cli/commands.h"
 #include "tools/cli/hardware_options.h"
 #include "tools/evaluate/remodel.h"
 #include "tools/report/report_file.h"
-#include "tools/report/report_text.h"
+#include "tools/report/times_text.h"
 
 namespace beampipe {
 namespace {
@@ -15,21 +16,38 @@ namespace {
 struct ModelArguments {
   std::vector<std::string> folders;
   HardwareOptions hardware;
+  TimesOptions times;
   bool json = false;
 };
 
+Report model(const std::string& folder, const Hardware* other, const ModelArguments& arguments) {
+  const ReportFile file = read_report(folder);
+  const std::string name = (file.folder / "report.json").string();
+  if (!file.json.contains("hardware"))
+    throw ReportError(name + ": expected a run whose times can be modelled, found one without hardware");
+  try {
+    Report report = read_from_report(file.folder, [&] { return remodelled(file.json, other); });
+    if (!report.memory.modelled)
+      throw ReportError(name + ": expected a run that modelled memory, found one with --no-memory-model");
+    report.hardware = with_costs(report.hardware, arguments.hardware);
+    return report;
+  } catch (const OtherMemory& error) {
+    throw ReportError(name + ": " + error.what());
+  }
+}
+
 void model(const ModelArguments& arguments) {
-  const std::vector<Hardware> all = read_hardware(arguments.hardware);
+  if (arguments.times.sensitivity && arguments.times.over.empty())
+    throw UsageError("--sensitivity: expected --over TECHNIQUE beside it");
+  std::optional<Hardware> other;
+  if (!arguments.hardware.hardware.empty()) other = read_hardware(arguments.hardware);
   Json json = Json::array();
   for (const std::string& folder : arguments.folders) {
-    const ReportFile file = read_report(folder);
-    const Report report = read_from_report(file.folder, [&] { return remodelled(file.json, all); });
-    if (!report.memory.modelled)
-      throw ReportError(folder + "/report.json: expected a run that modelled memory, found one with --no-memory-model");
+    const Report report = model(folder, other ? &*other : nullptr, arguments);
     if (arguments.json)
-      json.push_back({{"folder", folder}, {"times", times_json(report)}});
+      json.push_back({{"folder", folder}, {"times", times_json(report, arguments.times)}});
     else
-      std::cout << folder << ":" << times_text(report);
+      std::cout << folder << ":" << times_text(report, arguments.times);
   }
   if (arguments.json) std::cout << json_text(json);
 }
@@ -38,14 +56,27 @@ void model(const ModelArguments& arguments) {
 
 void add_model_command(CommandLine& line) {
   const auto arguments = std::make_shared<ModelArguments>();
-  Command command = line.add_command("model", "Model the times of finished runs on other hardware");
+  Command command = line.add_command("model", "Model the times of finished runs again");
   command.add("DIR", arguments->folders, "folders that run or compare wrote").required();
-  add_hardware_options(command, arguments->hardware);
-  command.add_flag("--json", arguments->json, "print JSON, with the time of each stage");
+  add_hardware_options(command, arguments->hardware, "that of the run");
+  command.add("--over", arguments->times.over,
+              "a technique of the run: also print the times of the others over its time, with intervals");
+  command.add_flag("--sensitivity", arguments->times.sensitivity,
+                   "with --over: also print what each rate makes of the quotients at the ends of its range");
+  command.add_flag("--json", arguments->json, "print JSON, with the time and the busiest unit of each stage");
   command.footer(
-      "Renders nothing: times follow from the counts in report.json.\n\nExample:\n"
+      "Renders nothing: times follow from the counts in report.json. Hardware with another memory system than that of "
+      "the\nrun counts other bytes and is refused.\n\n"
+      "in turn       one stage after the other\n"
+      "nine in ten   nine tenths of these times, if rates are drawn from the ranges that the hardware states for them\n"
+      "on cores      the geometry, and then bins in their order, each on the core that is free first\n"
+      "at once       all units at once and evenly: the time of the busiest\n"
+      "uneven        how much longer the busiest core works than the mean\n"
+      "on chip       what the pixels of a bin take, and how many bins a core has room for\n"
+      "even          after a quotient: the interval contains 1\n\n"
+      "Example:\n"
       "  beampipe run fence.json -t beam msaa:8 -o out\n"
-      "  beampipe model out --hardware titan_v,rtx_4090,mali_g710 --material-cost 200,4");
+      "  beampipe model out --material-cost 200,4 --over msaa:8 --sensitivity");
   command.set_work([arguments] { model(*arguments); });
 }
 

@@ -5,7 +5,6 @@
 #include "tools/cli/camera_file.h"
 #include "tools/cli/commands.h"
 #include "tools/evaluate/hardware.h"
-#include "tools/evaluate/memory_system.h"
 #include "tools/inspect/inspection_json.h"
 #include "tools/report/report_json.h"
 #include "tools/sweep/sweep_plan.h"
@@ -18,13 +17,9 @@ struct NamedSchema {
   const char* name;
   Json (*schema)();
 };
-constexpr NamedSchema kSchemas[] = {{"trace", trace_schema},
-                                    {"hardware", hardware_schema},
-                                    {"memory_system", memory_system_schema},
-                                    {"camera", camera_schema},
-                                    {"sweep", sweep_plan_schema},
-                                    {"report", report_schema},
-                                    {"inspections", inspections_schema}};
+constexpr NamedSchema kSchemas[] = {{"trace", trace_schema},   {"hardware", hardware_schema},
+                                    {"camera", camera_schema}, {"sweep", sweep_plan_schema},
+                                    {"report", report_schema}, {"inspections", inspections_schema}};
 
 }  // namespace
 

@@ -31,8 +31,8 @@ constexpr const char* kSweepFooter =
    "memory_system.l2_bytes": [65536, 1048576, 4718592],
    "hardware": ["titan_v", "mali_g710"]}
 
-Axes: traces, techniques, sizes ("320x180"), memory_system (files), memory_system.NAME, hardware (names or files),
-hardware.NAME, implementations. "errors": true compares pictures with the reference; "frames": [0, 1] renders these
+Axes: traces, techniques, sizes ("320x180"), hardware (names or files), hardware.NAME (rates), memory_system.NAME (in
+place of the hardware's), implementations. "errors": true compares pictures with the reference; "frames": [0, 1] renders these
 alone; "points" is a list of smaller grids in place of the one. Files are relative to the plan's folder, and
 `beampipe schema sweep` describes every key.
 

@@ -27,12 +27,10 @@ ShadingCost parse_cost(const std::string& option, const std::string& text) {
 
 }  // namespace
 
-void add_hardware_options(Command& command, HardwareOptions& options, HardwareCount count) {
-  const std::string several =
-      count == HardwareCount::several ? "; several with commas between them are shown side by side" : "";
+void add_hardware_options(Command& command, HardwareOptions& options, const std::string& fallback) {
   command.add("--hardware", options.hardware,
-              "the hardware whose times are modelled: " + list_of(hardware_names(), "or") +
-                  ", or a file that describes one" + several + " (default: " + hardware_names().front() + ")");
+              "the GPU whose memory system and times are modelled: " + list_of(hardware_names(), "or") +
+                  ", or a file that describes one (`beampipe schema hardware`; default: " + fallback + ")");
   command.add(
       "--material-cost", options.material_cost,
       "OPERATIONS[,FETCHES[,REGISTERS]]: what each fragment shader invocation costs in modelled times, in addition to "
@@ -41,18 +39,17 @@ void add_hardware_options(Command& command, HardwareOptions& options, HardwareCo
               "the same for lighting, in the stage `light` or, without one, in the fragment shader");
 }
 
-std::vector<Hardware> read_hardware(const HardwareOptions& options) {
-  std::vector<Hardware> all =
-      read_hardware_list(options.hardware.empty() ? hardware_names().front() : options.hardware);
-  if (options.material_cost.empty() && options.light_cost.empty()) return all;
-  for (Hardware& each : all) {
-    const auto cost = [](const std::string& option, const std::string& text, const ShadingCost& described) {
-      return text.empty() ? described : parse_cost(option, text);
-    };
-    each = with_shading_costs(each, cost("--material-cost", options.material_cost, each.material),
-                              cost("--light-cost", options.light_cost, each.light));
-  }
-  return all;
+Hardware read_hardware(const HardwareOptions& options) {
+  return with_costs(read_hardware(options.hardware.empty() ? hardware_names().front() : options.hardware), options);
+}
+
+Hardware with_costs(const Hardware& hardware, const HardwareOptions& options) {
+  if (options.material_cost.empty() && options.light_cost.empty()) return hardware;
+  const auto cost = [](const std::string& option, const std::string& text, const ShadingCost& described) {
+    return text.empty() ? described : parse_cost(option, text);
+  };
+  return with_shading_costs(hardware, cost("--material-cost", options.material_cost, hardware.material),
+                            cost("--light-cost", options.light_cost, hardware.light));
 }
 
 }  // namespace beampipe

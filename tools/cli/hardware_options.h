@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tools/cli/command_line.h"
 #include "tools/evaluate/hardware.h"
@@ -16,12 +15,13 @@ struct HardwareOptions {
   bool operator==(const HardwareOptions&) const = default;
 };
 
-enum class HardwareCount { one, several };  // that the command can show
+// `options` must live until the command line is parsed. `fallback`: what is taken without --hardware, for the help.
+void add_hardware_options(Command& command, HardwareOptions& options, const std::string& fallback = "titan_v");
 
-// `options` must live until the command line is parsed.
-void add_hardware_options(Command& command, HardwareOptions& options, HardwareCount count = HardwareCount::several);
+// What --hardware names, or titan_v. Throws UsageError, or what reading a description throws.
+Hardware read_hardware(const HardwareOptions& options);
 
-// At least one. Throws UsageError, or what reading a description throws.
-std::vector<Hardware> read_hardware(const HardwareOptions& options);
+// The same hardware with the costs that the options name.
+Hardware with_costs(const Hardware& hardware, const HardwareOptions& options);
 
 }  // namespace beampipe

@@ -13,7 +13,6 @@
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
-#include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
 #include "traces/files/trace_io.h"
@@ -37,9 +36,9 @@ void require_trace(const RunArguments& arguments) {
   throw UsageError("TRACE is missing" + hint);
 }
 
-MemoryParameters memory_of(const RunArguments& arguments) {
-  MemoryParameters memory =
-      arguments.memory_system.empty() ? MemoryParameters{} : read_memory_system(arguments.memory_system);
+// That of the hardware, as options change it.
+MemoryParameters memory_of(const RunArguments& arguments, const Hardware& hardware) {
+  MemoryParameters memory = hardware.memory;
   memory.modelled = !arguments.no_memory_model;
   if (arguments.no_compression) memory.compression = false;
   if (arguments.framebuffer == kByTechnique) memory.framebuffer.reset();
@@ -92,21 +91,16 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
   command.add_flag(
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
-  command.add("--memory-system", arguments.memory_system,
-              "a file that describes the modelled memory system: caches, sectors, compression, bins (`beampipe schema "
-              "memory_system`; default: that of a Titan V). The next three options override it");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
   command
       .add("--framebuffer", arguments.framebuffer,
            "where the pixels of a bin are kept: on chip, as in tile-based rendering; in memory, behind caches; or as "
-           "each "
-           "technique is designed (default: by-technique)")
+           "each technique is designed (default: as the hardware does, which on desktop GPUs is by-technique)")
       .one_of({kByTechnique, kOnChip, kInMemory});
   command
       .add("--on-chip-memory", arguments.on_chip_bytes,
-           "tile memory for the pixels of a bin, such as 128KB; if a bin does not fit, its pixels are in memory "
-           "(default: "
-           "384KB)")
+           "what a core has on chip for the pixels of bins, such as 64KB, in place of what the hardware has. Bins are "
+           "made so small that as many fit as a core works on; if not even one of 8 x 8 fits, pixels are in memory")
       .bytes(1, std::uint64_t{1} << 31);
   command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");
 }
@@ -118,10 +112,8 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.techniques = parse_techniques(arguments.specs);
   plan.repeat = arguments.repeat;
   plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
-  std::vector<Hardware> hardware = read_hardware(arguments.hardware);
-  plan.hardware = hardware.front();
-  plan.more_hardware.assign(hardware.begin() + 1, hardware.end());
-  plan.options.memory = memory_of(arguments);
+  plan.hardware = read_hardware(arguments.hardware);
+  plan.options.memory = plan.hardware.memory = memory_of(arguments, plan.hardware);
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});

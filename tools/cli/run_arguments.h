@@ -21,9 +21,8 @@ struct RunArguments {
   std::vector<std::string> specs;
   std::string simd;                 // empty: the best one that this machine has
   std::uint64_t memory_limit = 0;   // bytes; 0: the default
-  std::string memory_system;        // file; empty: the default system
-  std::string framebuffer;          // empty: as the memory system says
-  std::uint64_t on_chip_bytes = 0;  // 0: as the memory system says
+  std::string framebuffer;          // empty: as the hardware says
+  std::uint64_t on_chip_bytes = 0;  // 0: as the hardware says
   int threads = 0, repeat = 1;
   bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false, force = false;
 };

@@ -5,6 +5,7 @@
 #include "tools/evaluate/resume.h"
 #include "tools/report/report_json.h"
 #include "tools/report/report_text.h"
+#include "tools/report/times_text.h"
 
 namespace beampipe {
 
@@ -29,7 +30,7 @@ void finish_report(OutputFolder& output, const Report& report) {
   output.keep();
   FrameRecords(output, report.made_by).remove();
   std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)
-            << (report.more_hardware.empty() ? "" : times_text(report))
+            << (report.memory.modelled ? times_text(report) : "")
             << "report: " << (output.path() / "report.json").string() << "\n";
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "stages/cost/counters.h"
+#include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/saved_work.h"
 
 namespace beampipe {
@@ -44,8 +45,10 @@ Form<StageCounters> make_stage_form() {
     if (!group.empty())
       stage.written(group, std::identity(), Form<StageCounters>(grouped), "Operations of the stage, by kind.");
   }
-  return stage.added("modelled_ms", form::by_name(form::amount()).schema,
-                     "Milliseconds that the modelled hardware takes for this stage, by implementation.");
+  return stage
+      .added("modelled_ms", form::by_name(form::amount()).schema,
+             "Milliseconds that the modelled hardware takes for this stage, by implementation.")
+      .added("busiest_unit", form::by_name(form::text()).schema, "The unit that takes so long, by implementation.");
 }
 
 const Form<StageCounters>& stage_form() {
@@ -126,6 +129,8 @@ Form<ModelledTime> modelled_form() {
   return ObjectForm<ModelledTime>()
       .written("overlap", &ModelledTime::overlap_ms, form::amount(),
                "All stages at once: the time of the busiest unit.")
+      .written("scheduled", &ModelledTime::scheduled_ms, form::amount(),
+               "Bins one by one on cores, in their order, each with all its stages at once.")
       .written("sum", &ModelledTime::sum_ms, form::amount(), "One stage after the other: the sum over the stages.")
       .written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit.");
 }
@@ -163,7 +168,9 @@ Form<FrameOf> make_frame_form() {
       .written("wall_ms", member(&Frame::wall_ms), wall_form(), "Time of the simulator, in milliseconds.")
       .written("a_buffer_peak_bytes", member(&Frame::a_buffer_peak_bytes), form::count(),
                "The largest size of the A-buffer.")
-      .written("bin_pixels", member(&Frame::bin_pixels), form::count(), "Pixels of the largest bin.");
+      .written("bin_pixels", member(&Frame::bin_pixels), form::count(), "Pixels of the largest bin.")
+      .written("bin_operations", filled(&Frame::bin_operations), form::list(form::count()),
+               "Operations of all stages of each bin, row by row.");
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
     for (const CounterInfo& counter : stage_counters())
       if (counter.name == std::string_view(column))
@@ -176,8 +183,7 @@ Form<FrameOf> make_frame_form() {
       .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),
                "Work that was not done, by name (`beampipe counters`).")
       .written("stages", member(&Frame::stages), form::list(stage_form()), "The stages, in the order of the pipeline.")
-      .added("modelled_ms", form::by_name(modelled_form()).schema,
-             "Modelled times, by implementation; those of further hardware as HARDWARE.IMPLEMENTATION.");
+      .added("modelled_ms", form::by_name(modelled_form()).schema, "Modelled times, by implementation.");
 }
 
 const Form<FrameOf>& frame_form() {
@@ -201,24 +207,21 @@ Form<double> rmse_form() {
 
 Json frame_schema() { return frame_form().schema; }
 
-Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware,
-             const std::vector<Hardware>& more) {
+Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware) {
   FrameOf of{frame, result, {}};
   for (const StageCounters& stage : frame.stages) of.all += stage;
   Json json = frame_form().write(of);
   if (of.all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
   std::vector<Json>& stages = json["stages"].elements();
-  const auto add = [&](const Hardware& each, const std::string& prefix) {
-    for (const Implementation& implementation : each.implementations) {
-      const ModelledTime time = modelled_time(each, implementation, frame.stages, frame.open_pixel_bytes());
-      const std::string name = prefix + implementation.name;
-      json["modelled_ms"][name] = modelled_form().write(time);
-      for (const StageTime& of_stage : time.stages)
-        (*find_stage(stages, name_of(of_stage.stage)))["modelled_ms"][name] = of_stage.ms;
+  for (const Implementation& implementation : hardware.implementations) {
+    const ModelledTime time = modelled_time(hardware, implementation, frame.work());
+    json["modelled_ms"][implementation.name] = modelled_form().write(time);
+    for (const StageTime& of_stage : time.stages) {
+      Json& stage = *find_stage(stages, name_of(of_stage.stage));
+      stage["modelled_ms"][implementation.name] = of_stage.ms;
+      stage["busiest_unit"][implementation.name] = of_stage.busiest;
     }
-  };
-  add(hardware, "");
-  for (const Hardware& each : more) add(each, each.label + ".");
+  }
   return json;
 }
 
@@ -242,6 +245,8 @@ FrameReport frame_of(const Json& json) {
   frame.wall_ms = wall_time_of(json.at("wall_ms"));
   frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes").get<std::uint64_t>();
   frame.bin_pixels = json.at("bin_pixels").get<std::uint64_t>();
+  if (const Json* operations = json.find("bin_operations"))
+    for (const Json& of_bin : operations->elements()) frame.bin_operations.push_back(of_bin.get<std::uint64_t>());
   for (const Json& buffer : json.at("buffers").elements())
     if (buffer.at("name") != kABuffer)
       frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),

@@ -20,9 +20,7 @@ Json frame_schema();
 
 // A frame, as in report.json. The framebuffer of `technique` and times modelled for `hardware` are included; both may
 // be empty.
-// Times on `more` hardware have its label in their names: "rtx_4090.shaders".
-Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware,
-             const std::vector<Hardware>& more = {});
+Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware);
 
 // The one of "stages" that is called so; null if there is none.
 Json* find_stage(std::vector<Json>& stages, std::string_view name);

@@ -10,6 +10,7 @@
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/metrics.h"
+#include "tools/evaluate/modelled_time.h"
 
 namespace beampipe {
 
@@ -55,7 +56,8 @@ struct FrameReport {
   std::vector<StageCounters> stages;
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
-  std::uint64_t bin_pixels = 0;  // of the largest bin
+  std::uint64_t bin_pixels = 0;               // of the largest bin
+  std::vector<std::uint64_t> bin_operations;  // of each bin, in the order in which they are drawn
 
   // What the pixels of a bin take on chip; 0 if they are in memory.
   double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }
@@ -64,6 +66,9 @@ struct FrameReport {
   double bytes_beside_framebuffer() const {
     return static_cast<double>(a_buffer_peak_bytes) + peak_bytes_of(kTranslucentLayer);
   }
+
+  // What the frame's modelled time depends on. This must outlive it.
+  FrameWork work() const { return {stages, open_pixel_bytes(), bin_operations}; }
 
   double peak_bytes_of(std::string_view buffer) const;  // 0 if there is none of this name
 };

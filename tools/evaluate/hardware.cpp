@@ -1,101 +1,20 @@
 #include "tools/evaluate/hardware.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <system_error>
 
 #include "tools/evaluate/hardware_text.h"
+#include "tools/evaluate/memory_system.h"
 #include "traces/closest_name.h"
 #include "traces/files/input_file.h"
 
 namespace beampipe {
 namespace {
 
-using Rates = std::map<std::string, double>;
 using UnitsOfStages = decltype(Implementation::units);
 
-struct StageWork : StageCounters {
-  bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
-};
-
-// The clocks that a unit needs for the work of a stage.
-using Clocks = std::function<double(const Rates& rates, const StageWork& stage)>;
-
-constexpr double kProbeBytes = 16;  // a bilinear probe: four texels of 4 bytes
-
-// Not a unit: it marks the stages that work on the pixels of a bin, which may be on chip.
-constexpr const char* kOnChip = "on_chip";
-
-double over(double work, double rate) { return work / rate; }
-
-// Operations on 64-bit integers are in the integer lanes, and issued twice. All that a shader reads and writes, except
-// for texels, passes its core's L1 or shared memory.
-double shader_clocks(const Rates& rates, const StageWork& s) {
-  const auto& ops = s.ops;
-  const double wide = static_cast<double>(ops.wide), total = static_cast<double>(ops.total());
-  const double mul_add = static_cast<double>(ops.mul_add), add = static_cast<double>(ops.add);
-  const double narrow = mul_add + add > 0 ? std::max(1 - wide / (mul_add + add), 0.0) : 0;
-  return std::max({over(total + wide, rates.at("issue_per_clk")),
-                   narrow * (over(mul_add, rates.at("mul_add_per_clk")) + over(add, rates.at("add_per_clk"))),
-                   over(ops.bit, rates.at("bit_per_clk")) + over(wide, rates.at("wide_per_clk")),
-                   over(ops.fetch, rates.at("fetch_per_clk")), over(ops.special, rates.at("special_per_clk")),
-                   over(ops.convert, rates.at("convert_per_clk")),
-                   over(s.logical_bytes() - s.texture_bytes, rates.at("on_chip_bytes_per_clk"))});
-}
-
-// What is read and written where pixels are, by bytes of the formats: through the ROP's caches, or in the memory of the
-// cores.
-double pixel_clocks(const Rates& rates, const StageWork& s) {
-  return over(s.logical_bytes(), rates.at(s.pixels_on_chip ? "on_chip_bytes_per_clk" : "rop_bytes_per_clk"));
-}
-
-const std::map<std::string, Clocks>& units() {
-  static const std::map<std::string, Clocks> all = {
-      {"triangles",
-       [](const Rates& rates, const StageWork& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
-      {"raster",
-       [](const Rates& rates, const StageWork& s) { return over(s.items_out, rates.at("raster_pixels_per_clk")); }},
-      {"conservative_raster",
-       [](const Rates& rates, const StageWork& s) {
-         return over(s.lanes_used, rates.at("conservative_pixels_per_clk"));  // touched pixels, hidden ones included
-       }},
-      {"quads",
-       [](const Rates& rates, const StageWork& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
-      {"shader", shader_clocks},
-      {"shading", shader_clocks},
-      {"texture",
-       [](const Rates& rates, const StageWork& s) { return over(s.texture_bytes, rates.at("texture_bytes_per_clk")); }},
-      {"mask_generator",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("conservative_pixels_per_clk")),
-                         over(s.position_tests, rates.at("mask_positions_per_clk")));
-       }},
-      {"sorter",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")),
-                         over(s.ops.total(), rates.at("sort_operations_per_clk")));
-       }},
-      {"composer",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max({over(s.items_in, rates.at("rop_fragments_per_clk")),
-                          over(s.position_tests, rates.at("compose_positions_per_clk")), pixel_clocks(rates, s)});
-       }},
-      {"rop_samples",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("rop_samples_per_clk")), pixel_clocks(rates, s));
-       }},
-      {"rop_fragments",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")), pixel_clocks(rates, s));
-       }},
-      {"l2", [](const Rates& rates, const StageWork& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
-      {"dram",
-       [](const Rates& rates, const StageWork& s) { return over(s.dram_bytes, rates.at("dram_bytes_per_clk")); }},
-  };
-  return all;
-}
+constexpr double kLeastRate = 1e-6, kMostRate = 1e12;  // so that no time becomes infinite
 
 Form<ShadingCost> cost_form() {
   constexpr double kMost = 1e6;
@@ -116,16 +35,21 @@ bool can_do(const std::string& unit, const StageInfo& stage) {
   return true;
 }
 
-// Work of a stage with a mistyped name would cost nothing. A depth pre-pass runs on the units of the other pass.
+// Work of a stage without units would cost nothing, and so would that of a mistyped name. A depth pre-pass runs on the
+// units of the other pass. The reference is no pipeline of a GPU.
 Form<UnitsOfStages> units_form() {
   ObjectForm<UnitsOfStages> object("the name of a stage");
   for (const StageInfo& stage : stage_list()) {
-    std::vector<std::string> names = {kOnChip};
-    for (const auto& [name, clocks] : units())
+    if (stage.id == StageId::reference_raster) continue;
+    std::vector<std::string> names = {kOnChipMark};
+    for (const std::string& name : unit_names())
       if (can_do(name, stage)) names.push_back(name);
-    const Form<std::vector<std::string>> list = form::list(form::one_of(names));
-    object.add({std::string(stage.name), "The units that it uses.", false, list.schema,
-                [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) { of[id] = list(at); }});
+    const Form<std::vector<std::string>> list = form::list(form::one_of(names), "unit");
+    object.add({std::string(stage.name), "The units that it uses.", true, list.schema,
+                [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) {
+                  list.read(at, of[id]);
+                  if (of[id] == std::vector<std::string>{kOnChipMark}) at.fail("at least one unit beside on_chip");
+                }});
   }
   return object;
 }
@@ -139,72 +63,46 @@ Form<Implementation> implementation_form() {
           "on what a bin has on chip.");
 }
 
+Form<RateRange> range_form() {
+  const Form<double> rate = form::number(kLeastRate, kMostRate);
+  return {form::array_schema(rate.schema, 2), [rate](const JsonCursor& at, RateRange& range) {
+            if (at.elements().size() != 2) at.fail("two numbers, the lowest and the highest rate");
+            range = {rate(at.elements()[0]), rate(at.elements()[1])};
+          }};
+}
+
+// The rates lie in their ranges.
+void expect_in_ranges(const JsonCursor& at, const Hardware& hardware) {
+  for (const auto& [name, range] : hardware.ranges)
+    if (!(range.low <= hardware.rates.at(name) && hardware.rates.at(name) <= range.high))
+      at["ranges"][name].fail("a range around the rate of " + Json(hardware.rates.at(name)).dump());
+}
+
 Form<Hardware> hardware_form() {
-  constexpr double kLeast = 1e-6, kMost = 1e12;  // far beyond any rate, and near enough that no time becomes infinite
-  const Form<double> rate = form::number(kLeast, kMost);
+  const Form<double> rate = form::number(kLeastRate, kMostRate);
   std::vector<form::Key> sources = {{"clock_mhz", "Of the clock."}};
   for (const form::Key& each : hardware_rates()) sources.push_back({each.key, "Of this rate."});
   const Form<Hardware> shading = ObjectForm<Hardware>()
                                      .required("material", &Hardware::material, cost_form(), "Of materials.")
                                      .required("light", &Hardware::light, cost_form(), "Of lights.");
   return ObjectForm<Hardware>()
-      .add(form::unused<Hardware>("beampipe_hardware", true, form::version(3), "The version of this format."))
+      .add(form::unused<Hardware>("beampipe_hardware", true, form::version(4), "The version of this format."))
       .required("name", &Hardware::name, form::text(), "What it is, for people.")
       .required("clock_mhz", &Hardware::clock_mhz, rate, "The clock, in MHz.")
+      .required("memory_system", &Hardware::memory, memory_system_form(),
+                "Caches, memory on chip and cores, as far as they differ from those of a Titan V.")
       .required("rates", &Hardware::rates, form::record(hardware_rates(), true, rate), "What the units do per clock.")
+      .optional("ranges", &Hardware::ranges, form::record(hardware_rates(), false, range_form()),
+                "Where a rate lies, [lowest, highest], as far as its source tells. Others are taken as exact.")
       .add(form::unused<Hardware>(
           "sources", true, form::record(sources, true, form::text("where the number is from, or that it is a choice")),
           "Where each number is from, or that it is a choice, by its name."))
       .required("implementations", &Hardware::implementations,
                 form::named(implementation_form(), &Implementation::name, "implementation"),
-                "Ways to do the same work, by name: which units each stage uses. A stage that is not listed uses L2 "
-                "and DRAM only, as all stages do.")
+                "Ways to do the same work, by name: which units each stage uses beside L2 and DRAM.")
       .add({"shading", "What each invocation of a fragment shader costs beside what the materials of the trace cost.",
-            false, shading.schema, shading.read});
-}
-
-// The counters of a stage that shades, with the costs that come to its materials' own. Lighting is a stage of its own
-// in some techniques. `registers`: that an invocation takes.
-StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, bool has_light, double& registers) {
-  StageCounters priced = stage;
-  const auto add = [&](const ShadingCost& cost) {
-    constexpr double kMostInvocations = 1e11;  // so that nothing overflows, whatever a damaged report says
-    const double invocations = std::min(static_cast<double>(stage.lanes_issued), kMostInvocations);
-    priced.ops.mul_add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
-    priced.ops.add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
-    const auto texels = static_cast<std::uint64_t>(invocations * cost.fetches * kProbeBytes);
-    priced.bytes_read += texels;
-    priced.texture_bytes += texels;
-    registers = std::max(registers, cost.registers);
-  };
-  if (stage.stage.id == StageId::shade) add(hardware.material);
-  if (stage.stage.id == StageId::light || (stage.stage.id == StageId::shade && !has_light)) add(hardware.light);
-  return priced;
-}
-
-std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
-                                       const StageCounters& unpriced, bool has_light, double bin_bytes) {
-  double registers = 0;
-  const StageWork stage{with_costs(hardware, unpriced, has_light, registers), bin_bytes > 0};
-  const Rates& rates = hardware.rates;
-  const double clocks_per_ms = hardware.clock_mhz * 1e3;
-  std::map<std::string, double> times;
-  const auto use = [&](const std::string& unit) { times[unit] = units().at(unit)(rates, stage) / clocks_per_ms; };
-  bool on_chip = false;
-  if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
-    for (const std::string& unit : found->second) unit == kOnChip ? static_cast<void>(on_chip = true) : use(unit);
-  if (const auto shading = times.find("shading"); shading != times.end())
-    shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
-  const double room = rates.at("on_chip_bytes_per_core"), wanted = rates.at("bins_per_core");
-  if (on_chip && bin_bytes > 0) {
-    const double held = std::clamp(std::floor(room / bin_bytes), 1.0, std::max(wanted, 1.0));
-    for (auto& [unit, ms] : times) ms *= std::max(wanted / held, 1.0);
-  }
-  use("l2");
-  use("dram");
-  if (on_chip && bin_bytes > room)
-    times["l2"] += over(stage.logical_bytes(), rates.at("l2_bytes_per_clk")) * (1 - room / bin_bytes) / clocks_per_ms;
-  return times;
+            false, shading.schema, shading.read})
+      .check(expect_in_ranges);
 }
 
 }  // namespace
@@ -240,11 +138,11 @@ const std::vector<form::Key>& hardware_rates() {
       {"on_chip_bytes_per_clk", "Bytes of pixels on chip that are read and written."},
       {"l2_bytes_per_clk", "Bytes that L2 moves."},
       {"dram_bytes_per_clk", "Bytes that DRAM moves."},
-      {"on_chip_bytes_per_core", "Bytes that a core has for the pixels of bins."},
-      {"bins_per_core", "Bins that a core works on at a time."},
   };
   return all;
 }
+
+std::string label_of(const std::string& named) { return std::filesystem::path(named).stem().string(); }
 
 Hardware titan_v() { return read_hardware("titan_v"); }
 
@@ -254,7 +152,7 @@ Hardware read_hardware(const std::string& name_or_file) {
     if (name_or_file != each.name) continue;
     const std::string file = std::string("the built-in description ") + each.name;
     Hardware hardware = parse_hardware(parse_json_text(each.text, file), file);
-    hardware.label = each.name;
+    hardware.named = hardware.label = each.name;
     return hardware;
   }
   if (std::error_code error; !std::filesystem::exists(name_or_file, error)) {
@@ -264,24 +162,12 @@ Hardware read_hardware(const std::string& name_or_file) {
                "neither" + did_you_mean(name_or_file, hardware_names()));
   }
   Hardware hardware = parse_hardware(parse_json(name_or_file), name_or_file);
-  hardware.label = std::filesystem::path(name_or_file).stem().string();
+  hardware.named = name_or_file;
+  hardware.label = label_of(name_or_file);
   return hardware;
 }
 
-std::vector<Hardware> read_hardware_list(const std::string& list) {
-  std::vector<Hardware> all;
-  for (std::size_t at = 0, comma; at <= list.size(); at = comma + 1) {
-    comma = std::min(list.find(',', at), list.size());
-    Hardware hardware = read_hardware(list.substr(at, comma - at));
-    for (const Hardware& other : all)
-      if (other.label == hardware.label)
-        throw std::runtime_error("--hardware " + list + ": expected different names, found " + other.label + " twice");
-    all.push_back(std::move(hardware));
-  }
-  return all;
-}
-
-Json hardware_schema() { return schema_file(hardware_form().schema, "beampipe hardware, version 3"); }
+Json hardware_schema() { return schema_file(hardware_form().schema, "beampipe hardware, version 4"); }
 
 Hardware parse_hardware(const Json& json, const std::string& file) {
   Hardware hardware = hardware_form()(JsonCursor(json, file));
@@ -296,37 +182,6 @@ Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& materia
   const auto written = cost_form().write;
   priced.json["shading"] = {{"material", written(material)}, {"light", written(light)}};
   return priced;
-}
-
-std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, double bin_bytes) {
-  return times_of(hardware, implementation, stage, false, bin_bytes);
-}
-
-ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
-                           const std::vector<StageCounters>& stages, double bin_bytes) {
-  const bool has_light =
-      std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage.id == StageId::light; });
-  ModelledTime time;
-  std::map<std::string, double> busy;
-  for (const StageCounters& stage : stages) {
-    double longest = 0;
-    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, has_light, bin_bytes);
-    if (const auto shading = of_stage.extract("shading"))  // the same lanes
-      of_stage["shader"] = std::max(of_stage["shader"], shading.mapped());
-    for (const auto& [unit, ms] : of_stage) {
-      busy[unit] += ms;
-      longest = std::max(longest, ms);
-    }
-    time.stages.push_back({stage.stage, longest});
-    time.sum_ms += longest;
-  }
-  for (const auto& [unit, ms] : busy) {
-    if (ms < time.overlap_ms) continue;
-    time.overlap_ms = ms;
-    time.busiest = unit;
-  }
-  return time;
 }
 
 }  // namespace beampipe

@@ -1,10 +1,8 @@
-// Modelled time: the work of each stage, divided by the rates of described hardware.
+// Descriptions of hardware: one file describes one GPU.
 //
-// A description is a JSON file. It holds the rates of the hardware's units per clock, each with its source or marked as
-// a choice, and implementations, which say on which units each stage runs; every stage uses L2 and DRAM too. Those in
-// tools/evaluate/hardware/ are built in. A stage takes as long as its busiest unit. The model assumes that units are
-// never idle, except where bins do not fit on chip: it knows no latency, no divergence within warps and no driver. Its
-// times are therefore lower bounds, and the ratios between them say more than the times themselves.
+// A description is a JSON file. It holds the memory system, with which bytes are counted, the rates of the units per
+// clock, each with its source or marked as a choice, and implementations, which say on which units each stage runs;
+// every stage uses L2 and DRAM too. Those in tools/evaluate/hardware/ are built in.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +10,18 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 #include "traces/files/json_form.h"
 
 namespace beampipe {
 
+// Among the units of a stage it marks that the stage works on the pixels of a bin, which may be on chip.
+inline constexpr const char* kOnChipMark = "on_chip";
+
 struct Implementation {
   std::string name;
-  std::map<StageId, std::vector<std::string>> units;  // a stage that is not listed uses only L2 and DRAM
+  std::map<StageId, std::vector<std::string>> units;  // of every stage but that of the reference
 };
 
 // What each invocation of a fragment shader costs beside what the trace's materials cost.
@@ -29,11 +31,20 @@ struct ShadingCost {
   double registers = 0;  // that an invocation takes; the fewer invocations fit, the slower they are
 };
 
+// Where a rate lies, as far as its source tells.
+struct RateRange {
+  double low = 0, high = 0;
+  bool operator==(const RateRange&) const = default;
+};
+
 struct Hardware {
-  std::string label;  // its built-in name, or the name of its file
+  std::string named;  // as the user named it: a built-in name, or a file
+  std::string label;  // the built-in name, or that of the file without folder and extension
   std::string name;
   double clock_mhz = 0;
-  std::map<std::string, double> rates;  // under the names in the file
+  MemoryParameters memory = {};
+  std::map<std::string, double> rates;      // under the names in the file
+  std::map<std::string, RateRange> ranges;  // of some of them; others are taken as exact
   std::vector<Implementation> implementations;
   // `light` is what lighting costs: in `light` where a technique has this stage, else in `shade` beside `material`.
   ShadingCost material, light;
@@ -55,32 +66,13 @@ Json hardware_schema();
 Hardware read_hardware(const std::string& name_or_file);
 Hardware parse_hardware(const Json& json, const std::string& file);
 
-// Names or files, with commas between them. Throws std::runtime_error if two have the same label.
-std::vector<Hardware> read_hardware_list(const std::string& list);
+// Of the hardware that a user named so.
+std::string label_of(const std::string& named);
 
 // The same hardware with these costs, in its `json` too.
 Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light);
 
-// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...). `bin_bytes`: what the
-// pixels of a bin take on chip; 0 if they are in memory. A core holds as many bins as its memory has room for. If these
-// are fewer than it works on at a time, the stages that work on pixels wait as much longer (stall); if not even one has
-// room, the part that has none is read and written in L2 (spill).
-std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, double bin_bytes = 0);
-
-struct StageTime {
-  Stage stage;
-  double ms = 0;
-};
-
-struct ModelledTime {
-  double overlap_ms = 0;          // all stages at once: the time of the busiest unit, over all stages
-  double sum_ms = 0;              // one stage after the other: the sum of `stages`
-  std::string busiest;            // the name of that unit
-  std::vector<StageTime> stages;  // in the order of the stages
-};
-
-ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
-                           const std::vector<StageCounters>& stages, double bin_bytes = 0);
+// The units that a description may name, with "l2" and "dram", which every stage uses.
+std::vector<std::string> unit_names();
 
 }  // namespace beampipe

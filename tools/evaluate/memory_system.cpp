@@ -1,5 +1,6 @@
 #include "tools/evaluate/memory_system.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "pipeline/memory/dram_log.h"
@@ -76,8 +77,10 @@ std::vector<MemoryParameter> all_parameters() {
   place("compression", "", "whether blocks of surfaces are compressed", &Memory::compression, form::boolean());
   place("plane_bytes", "bytes", "a depth plane in a compressed block", &Memory::plane_bytes, integer(1, 64));
   place("framebuffer", "", "where the pixels of a bin are while it is drawn", &Memory::framebuffer, place_form());
-  place("on_chip_bytes", "bytes", "the memory on chip for the pixels of a bin", &Memory::on_chip_bytes,
+  place("on_chip_bytes", "bytes", "the memory that a core has on chip for the pixels of bins", &Memory::on_chip_bytes,
         integer(1, kMostOnChip));
+  place("bins_per_core", "bins", "how many bins a core works on at a time", &Memory::bins_per_core, integer(1, 64));
+  place("cores", "cores", "how many cores work on bins", &Memory::cores, integer(1, 65536));
   place("bin_pixels", "px", "the most pixels on each side of a bin; techniques whose bins are smaller keep them",
         &Memory::bin_pixels, form::power_of_two(8, kBinSize));
   return all;
@@ -141,10 +144,10 @@ Form<std::map<std::string, std::string>> sources_form(const JsonCursor* paramete
   return form::record(keys, parameters != nullptr, form::text("where the value is from, or that it is a choice"));
 }
 
+}  // namespace
+
 Form<MemoryParameters> memory_system_form() {
   return ObjectForm<MemoryParameters>()
-      .add(form::unused<MemoryParameters>("beampipe_memory_system", true, form::version(1),
-                                          "The version of this format."))
       .required("parameters", std::identity(), parameters_form(),
                 "The parameters that differ from the default's, or all of them.")
       .add(form::unused<MemoryParameters>("sources", true, sources_form(nullptr),
@@ -156,16 +159,16 @@ Form<MemoryParameters> memory_system_form() {
       });
 }
 
-}  // namespace
-
 void set_parameters(MemoryParameters& memory, const JsonCursor& values) { parameters_form().read(values, memory); }
 
-Json memory_system_schema() { return schema_file(memory_system_form().schema, "beampipe memory system, version 1"); }
-
-MemoryParameters parse_memory_system(const Json& json, const std::string& file) {
-  return memory_system_form()(JsonCursor(json, file));
+std::optional<MemoryDifference> find_difference(const MemoryParameters& first, const MemoryParameters& second,
+                                                const std::vector<std::string>& except) {
+  for (const MemoryParameter& parameter : memory_parameters()) {
+    if (std::find(except.begin(), except.end(), parameter.key) != except.end()) continue;
+    const Json a = parameter.get(first), b = parameter.get(second);
+    if (a != b) return MemoryDifference{parameter.key, a, b};
+  }
+  return std::nullopt;
 }
-
-MemoryParameters read_memory_system(const std::string& file) { return parse_memory_system(parse_json(file), file); }
 
 }  // namespace beampipe

@@ -1,7 +1,7 @@
-// Memory systems as files: the parameters of pipeline/memory/parameters.h, under names.
+// The memory system of a description of hardware: the parameters of pipeline/memory/parameters.h, under names.
 //
-// A description is a JSON file. It holds those parameters that differ from the default
-// system's, each with its source or marked as a choice.
+// A description names those parameters that differ from the default system's, each with its source or marked as a
+// choice.
 #pragma once
 
 #include <cstdint>
@@ -36,11 +36,16 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory);
 // if there is no such parameter, if a value is out of range, or if the values do not fit together.
 void set_parameters(MemoryParameters& memory, const JsonCursor& values);
 
-// The JSON Schema of descriptions.
-Json memory_system_schema();
+// Of {"parameters": {...}, "sources": {...}}, with a source for each parameter.
+Form<MemoryParameters> memory_system_form();
 
-// Throws TraceError, one line that names the file, the key, what was expected and what was found.
-MemoryParameters read_memory_system(const std::string& file);
-MemoryParameters parse_memory_system(const Json& json, const std::string& file);
+// The first parameter in which two systems differ, but for those in `except`: its name and both values. None if they
+// are the same.
+struct MemoryDifference {
+  std::string name;
+  Json first, second;
+};
+std::optional<MemoryDifference> find_difference(const MemoryParameters& first, const MemoryParameters& second,
+                                                const std::vector<std::string>& except = {});
 
 }  // namespace beampipe

@@ -1,6 +1,7 @@
-// The counts of finished runs, to model their times on other hardware without rendering again.
+// The counts of finished runs, to model their times again without rendering.
 #pragma once
 
+#include <stdexcept>
 #include <vector>
 
 #include "tools/evaluate/results.h"
@@ -8,8 +9,15 @@
 
 namespace beampipe {
 
-// Of report.json: trace, what made it, whether memory was modelled, and the stages and buffers of every technique's
-// frames. `all`: at least one. Throws JsonError if it is something else.
-Report remodelled(const Json& report, const std::vector<Hardware>& all);
+// Bytes were counted with another memory system: one line that names the parameter.
+struct OtherMemory : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Of report.json: trace, what made it, memory system, hardware, and the stages, buffers and bins of every technique's
+// frames. The hardware is `other`, or, if that is null, the report's own. Options of the run that changed the memory
+// system hold for `other` too. Throws OtherMemory if the rest of its memory system is another one, and JsonError or
+// TraceError if `report` is something else.
+Report remodelled(const Json& report, const Hardware* other = nullptr);
 
 }  // namespace beampipe

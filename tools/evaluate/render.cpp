@@ -141,6 +141,7 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   report.stages = result.stages;
   report.pixels = std::uint64_t{result.image.width} * result.image.height;
   report.bin_pixels = result.bin_pixels;
+  report.bin_operations = result.bin_operations;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = measure_named_error(spec, index, result.image, *reference);
@@ -173,7 +174,6 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
                 .hardware = plan.hardware,
                 .notes = plan.notes,
                 .made_by = made_by,
-                .more_hardware = plan.more_hardware,
                 .trace_frames = plan.trace.frames.size()};
   for (const std::size_t frame : plan.frames) report.frames.push_back(content_of(plan.trace, frame));
   return report;

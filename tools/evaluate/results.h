@@ -64,10 +64,9 @@ struct Report {
   std::vector<LadderRung> msaa_ladder = {};        // empty if not measured
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
   std::vector<DrawNote> notes = {};                // what the frames ask for and no technique does
-  Json made_by = {};                         // what the results depend on: maker_form() in tools/evaluate/resume.h
-  std::vector<Hardware> more_hardware = {};  // whose times are modelled too, for comparison
-  std::size_t trace_frames = 0;              // of the whole trace; 0: unknown
-  std::vector<FrameContent> frames = {};     // those that were rendered
+  Json made_by = {};                      // what the results depend on: maker_form() in tools/evaluate/resume.h
+  std::size_t trace_frames = 0;           // of the whole trace; 0: unknown
+  std::vector<FrameContent> frames = {};  // those that were rendered
 };
 
 // Such as "0.1.0".

@@ -22,7 +22,7 @@ constexpr const char* kFolder = "unfinished";
 const std::map<std::string, std::string> kDigested = {{"program", "another build of beampipe"},
                                                       {"trace", "another trace"},
                                                       {"hardware", "another --hardware"},
-                                                      {"memory_system", "another --memory-system"}};
+                                                      {"memory_system", "another memory system"}};
 
 // Null if there is no such file, or if it holds no JSON object.
 Json read_json(const fs::path& path) {
@@ -66,21 +66,12 @@ std::string range_text(const std::vector<std::size_t>& frames) {
   return std::to_string(frames.front()) + "-" + std::to_string(frames.back());
 }
 
-std::string hardware_text(const RunPlan& plan) {
-  std::string text = plan.hardware.json.dump();
-  for (const Hardware& each : plan.more_hardware) text += each.label + each.json.dump();
-  return text;
-}
-
 }  // namespace
 
 Form<Maker> maker_form() {
   const Form<std::string> digest{
       {{"type", "string"}, {"pattern", "^[0-9a-f]{16}$"}}, {}, [](const std::string& text) { return Json(text); }};
   const Form<std::string> command = form::one_of({"run", "compare"}), text = form::text();
-  const auto memory = [](auto MemoryParameters::*member) {
-    return [member](const Maker& maker) { return maker.plan.options.memory.*member; };
-  };
   return ObjectForm<Maker>()
       .written("command", &Maker::command, command, "The command.")
       .written(
@@ -104,20 +95,16 @@ Form<Maker> maker_form() {
           "That worked at once.")
       .written(
           "simd", [](const Maker&) { return simd_target(); }, text, "The instruction set.")
-      .written("memory_model", memory(&MemoryParameters::modelled), form::boolean(),
-               "Whether caches and DRAM were modelled.")
-      .written("compression", memory(&MemoryParameters::compression), form::boolean(), "Of framebuffer blocks.")
       .written(
-          "framebuffer", [](const Maker& maker) { return std::string(name_of(maker.plan.options.memory.framebuffer)); },
-          text, "Where the pixels of a bin are.")
-      .written("on_chip_bytes", memory(&MemoryParameters::on_chip_bytes), form::count(), "For the pixels of a bin.")
+          "memory_model", [](const Maker& maker) { return maker.plan.options.memory.modelled; }, form::boolean(),
+          "Whether caches and DRAM were modelled.")
       .written(
           "memory_system",
           [](const Maker& maker) { return digest_of(parameters_json(maker.plan.options.memory).dump()); }, digest,
           "Digest of the parameters.")
       .written(
-          "hardware", [](const Maker& maker) { return digest_of(hardware_text(maker.plan)); }, digest,
-          "Digest of the descriptions.")
+          "hardware", [](const Maker& maker) { return digest_of(maker.plan.hardware.json.dump()); }, digest,
+          "Digest of the description.")
       .written("ladder", &Maker::ladder, form::list(form::count(1)),
                "compare: the MSAA rates of --ladder; empty: the default ones.")
       .written("causes", &Maker::causes, form::boolean(), "compare: --causes.")

@@ -20,7 +20,6 @@ struct RunPlan {
   std::vector<std::size_t> frames;  // indices into the trace, rising
   int repeat = 1;
   Hardware hardware = titan_v();
-  std::vector<Hardware> more_hardware;         // to model times on it too
   std::shared_ptr<const TextureSet> textures;  // of the trace
   FrameInput options;                          // `threads` is the actual number, never 0
   FrameSinks sinks;

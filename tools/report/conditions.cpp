@@ -6,7 +6,6 @@
 
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/memory_system.h"
-#include "tools/files/digest.h"
 #include "tools/files/shell_word.h"
 
 namespace beampipe {
@@ -52,53 +51,43 @@ std::string picture_text(const std::vector<Json>& frames, std::uint64_t all) {
   return all > frames.size() ? text + " of " + grouped(all) : text;
 }
 
+// "ours (Our part, 1455 MHz)"
 std::string hardware_text(const Json& report) {
-  const auto text_of = [](const Json& hardware) {
-    return hardware.at("name").get<std::string>() + ", " + hardware.at("clock_mhz").dump() + " MHz";
-  };
-  std::string text = text_of(report.at("hardware"));
-  const Json more = report.value("more_hardware", Json::object());
-  for (const auto& [label, hardware] : more.members()) text += "; " + text_of(hardware);
-  return text;
+  const Json& hardware = report.at("hardware");
+  return label_of(report.at("hardware_named").get<std::string>()) + " (" + hardware.at("name").get<std::string>() +
+         ", " + hardware.at("clock_mhz").dump() + " MHz)";
 }
 
 std::string memory_text(const Json& memory) {
   if (!memory.at("modelled").get<bool>()) return "not modelled";
-  const auto cache = [&](const std::string& title, const char* key) {
-    return title + " " + size_text(memory.at(key).at("bytes").get<std::uint64_t>());
-  };
+  const auto size = [&](const char* key) { return size_text(memory.at(key).get<std::uint64_t>()); };
   const std::string side = memory.at("bin_pixels").dump();
-  return cache("L2", "l2_cache") + ", " + cache("L1", "l1_cache") + ", " + cache("ROP caches", "rop_cache") +
-         ", sectors of " + memory.at("sector_bytes").dump() + " bytes, compression " +
+  return "L2 " + size("l2_bytes") + ", L1 " + size("l1_bytes") + ", ROP caches " + size("rop_bytes") + ", sectors of " +
+         memory.at("sector_bytes").dump() + " bytes, compression " +
          (memory.at("compression").get<bool>() ? "on" : "off") + ", bins of at most " + side + " × " + side +
-         " pixels, " + size_text(memory.at("on_chip_bytes").get<std::uint64_t>()) + " on chip for a bin's pixels";
+         " pixels, " + memory.at("cores").dump() + " cores, each with " + size("on_chip_bytes") +
+         " on chip for the pixels of " + memory.at("bins_per_core").dump() + " bins";
 }
 
 // The option that names the hardware, or nothing for the default one.
 std::string hardware_option(const Json& report) {
-  const Json* const hardware = report.find("hardware");
-  if (!hardware) return "";
-  std::string names = "FILE";
-  for (const std::string& name : hardware_names())
-    if (read_hardware(name).json == *hardware) names = name;
-  const Json more = report.value("more_hardware", Json::object());
-  for (const auto& [label, each] : more.members()) names += "," + label;
-  return names == hardware_names().front() ? "" : " --hardware " + names;
+  const std::string named = report.value("hardware_named", std::string());
+  return named.empty() || named == hardware_names().front() ? "" : " --hardware " + short_shell_word(named);
 }
 
-std::string memory_options(const Json& maker) {
-  MemoryParameters memory;
+// The options that changed the hardware's memory system.
+std::string memory_options(const Json& report) {
+  const Json* const hardware = report.find("hardware");
+  if (!hardware) return "";
+  const Json& memory = report.at("memory_system");
   std::string options;
-  const std::string usual = name_of(memory.framebuffer), place = maker.value("framebuffer", usual);
-  if (place != usual) options += " --framebuffer " + place;
-  const std::uint32_t on_chip = maker.value("on_chip_bytes", memory.on_chip_bytes);
-  if (on_chip != memory.on_chip_bytes) options += " --on-chip-memory " + std::to_string(on_chip);
-  const Json named = {{"framebuffer", place}, {"on_chip_bytes", on_chip}};
-  set_parameters(memory, JsonCursor(named, "report.json"));
-  if (!maker.at("memory_model").get<bool>()) options += " --no-memory-model", memory.modelled = false;
-  if (!maker.at("compression").get<bool>()) options += " --no-compression", memory.compression = false;
-  return maker.at("memory_system") == digest_of(parameters_json(memory).dump()) ? options
-                                                                                : options + " --memory-system FILE";
+  if (!memory.at("modelled").get<bool>()) options += " --no-memory-model";
+  const Json described = parameters_json(parse_hardware(*hardware, "report.json").memory);
+  const auto changed = [&](const char* key) { return memory.at(key) != described.at(key); };
+  if (changed("compression")) options += " --no-compression";
+  if (changed("framebuffer")) options += " --framebuffer " + memory.at("framebuffer").get<std::string>();
+  if (changed("on_chip_bytes")) options += " --on-chip-memory " + memory.at("on_chip_bytes").dump();
+  return options;
 }
 
 }  // namespace
@@ -113,7 +102,7 @@ std::string command_of(const ReportFile& report) {
   if (report.json.value("trace_frames", rendered) > rendered)
     text += " --frames " + maker.at("frames").get<std::string>();
   if (maker.at("repeat") != 1) text += " --repeat " + maker.at("repeat").dump();
-  text += memory_options(maker) + hardware_option(report.json);
+  text += hardware_option(report.json) + memory_options(report.json);
   std::string rungs;
   const Json ladder = maker.value("ladder", Json::array());
   for (const Json& rung : ladder.elements()) rungs += (rungs.empty() ? "" : ",") + rung.dump();

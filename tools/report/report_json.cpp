@@ -5,6 +5,7 @@
 #include "tools/claims/claims.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/resume.h"
 
 namespace beampipe {
@@ -135,38 +136,20 @@ Form<LadderRung> rung_form() {
       .written("rmse", &LadderRung::rmse, form::amount(), "Its RMSE.");
 }
 
-Form<CacheParameters> cache_form() {
-  return ObjectForm<CacheParameters>()
-      .written("bytes", &CacheParameters::bytes, form::count(), "Its size.")
-      .written("ways", &CacheParameters::ways, form::count(), "Lines of a set.")
-      .written("line_bytes", &CacheParameters::line_bytes, form::count(), "Size of a line.");
-}
-
 Form<MemoryParameters> memory_form() {
-  using Memory = MemoryParameters;
-  return ObjectForm<Memory>()
-      .written("modelled", &Memory::modelled, form::boolean(), "Whether caches and DRAM were modelled.")
-      .written("compression", &Memory::compression, form::boolean(), "Of framebuffer blocks.")
-      .written("sector_bytes", &Memory::sector_bytes, form::count(), "Size of a sector.")
-      .written("rop_cache", &Memory::rop, cache_form(), "For each class of framebuffer surfaces.")
-      .written("l1_cache", &Memory::l1, cache_form(), "Of shader reads.")
-      .written("l2_cache", &Memory::l2, cache_form(), "Of everything.")
-      .written("plane_bytes", &Memory::plane_bytes, form::count(), "Of a plane in a compressed depth block.")
-      .written("bin_pixels", &Memory::bin_pixels, form::count(), "The most pixels on each side of a bin.")
-      .written(
-          "framebuffer", [](const Memory& memory) { return name_of(memory.framebuffer); },
-          form::one_of({kByTechnique, kOnChip, kInMemory}), "Where the pixels of a bin are.")
-      .written("on_chip_bytes", &Memory::on_chip_bytes, form::count(), "For the pixels of a bin.");
+  ObjectForm<MemoryParameters> object;
+  object.written("modelled", &MemoryParameters::modelled, form::boolean(), "Whether caches and DRAM were modelled.");
+  for (const MemoryParameter& parameter : memory_parameters())
+    object.add({parameter.key, parameter.meaning + ".", true, parameter.schema, {}, parameter.get});
+  return object;
 }
 
 std::optional<Json> hardware_of(const Report& report) {
   return report.hardware.implementations.empty() ? std::nullopt : std::optional(report.hardware.json);
 }
 
-std::optional<Json> more_hardware_of(const Report& report) {
-  Json more;
-  for (const Hardware& each : report.more_hardware) more[each.label] = each.json;
-  return more.is_null() ? std::nullopt : std::optional(more);
+std::optional<std::string> hardware_name_of(const Report& report) {
+  return report.hardware.named.empty() ? std::nullopt : std::optional(report.hardware.named);
 }
 
 Json schema_of_list(const Json& element) { return {{"type", "array"}, {"items", element}}; }
@@ -189,8 +172,7 @@ ObjectForm<Report> head_form() {
           form::as_it_is(maker_form().schema), "All that the results depend on.")
       .written("hardware", hardware_of, form::as_it_is(object),
                "The hardware whose times are modelled (`beampipe schema hardware`).")
-      .written("more_hardware", more_hardware_of, form::as_it_is(form::by_name(form::as_it_is(object)).schema),
-               "Further hardware, by label.")
+      .written("hardware_named", hardware_name_of, form::text(), "The hardware as the user named it.")
       .written(
           "trace_frames",
           [](const Report& report) {
@@ -249,7 +231,7 @@ void write_result(const TechniqueReport& result, const Report& report, const Wri
   ArrayText frames("frames", 2, write);
   for (const FrameReport& frame : result.frames) {
     frames.next();
-    write(indented(beampipe::to_json(frame, result, report.hardware, report.more_hardware), 4));
+    write(indented(beampipe::to_json(frame, result, report.hardware), 4));
   }
   frames.end();
   write("\n    }");

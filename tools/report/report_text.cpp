@@ -8,9 +8,6 @@
 namespace beampipe {
 namespace {
 
-// Milliseconds with three decimals, or two significant digits if that is more.
-std::string ms_text(double ms) { return format(ms < 0.01 ? "%.2g" : "%.3f", ms); }
-
 // The median of the frames' medians.
 double median_ms(const TechniqueReport& result) {
   std::vector<double> medians;
@@ -39,17 +36,16 @@ std::string emr_text(const EquivalentMsaa& emr) {
 std::string table_text(const Report& report, const std::string& folder) {
   const bool compared = !report.results.empty() && report.results.front().error.has_value();
   std::vector<std::vector<std::string>> rows(1);
-  rows[0] = {"technique", "bytes/pixel", "with A-buffer"};
+  rows[0] = {"technique", "B/px on chip", "off chip"};
   if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
   const bool varies = compared && report.results.front().parts.has_value();
   if (varies) rows[0].insert(rows[0].end(), {"visibility", "its EMR", "shading"});
   const bool moves = compared && report.results.front().flicker.has_value();
   if (moves) rows[0].push_back("flicker");
-  const bool with_model = !report.results.empty() && report.results.front().frames.front().wall_ms.with_memory_model;
-  rows[0].insert(rows[0].end(), {with_model ? "ms with model" : "ms", "picture"});
+  rows[0].insert(rows[0].end(), {"wall ms", "picture"});
   for (const TechniqueReport& result : report.results) {
     std::vector<std::string>& row = rows.emplace_back();
-    row = {result.technique, std::to_string(result.framebuffer_bytes_per_pixel),
+    row = {result.technique, format("%.0f", result.on_chip_bytes_per_pixel()),
            format("%.0f", result.peak_bytes_per_pixel())};
     if (compared) {
       const ErrorStats& error = result.error.value();
@@ -65,63 +61,6 @@ std::string table_text(const Report& report, const std::string& folder) {
     row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});
   }
   return align_columns(rows, {0, rows[0].size() - 1});
-}
-
-namespace {
-
-struct MeanTime {
-  double sum = 0, overlap = 0;
-  std::string busiest;
-  std::vector<StageTime> stages;  // those of the first frame
-};
-
-// Calls use(technique, "titan_v.shaders", time, first frame) for each technique and implementation.
-template <class Use>
-void for_each_time(const Report& report, const Use& use) {
-  std::vector<Hardware> all = {report.hardware};
-  all.insert(all.end(), report.more_hardware.begin(), report.more_hardware.end());
-  for (const TechniqueReport& result : report.results) {
-    if (result.technique == kReferenceSpec || result.frames.empty()) continue;
-    for (const Hardware& hardware : all) {
-      for (const Implementation& implementation : hardware.implementations) {
-        MeanTime mean;
-        for (const FrameReport& frame : result.frames) {
-          const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.open_pixel_bytes());
-          mean.sum += time.sum_ms / static_cast<double>(result.frames.size());
-          mean.overlap += time.overlap_ms / static_cast<double>(result.frames.size());
-          if (mean.busiest.empty()) mean.busiest = time.busiest, mean.stages = time.stages;
-        }
-        use(result, hardware.label + "." + implementation.name, mean);
-      }
-    }
-  }
-}
-
-}  // namespace
-
-std::string times_text(const Report& report) {
-  std::vector<std::vector<std::string>> rows = {{"technique"}};
-  for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
-    if (rows.size() == 1 || rows.back().front() != result.technique) rows.push_back({result.technique});
-    if (rows.size() == 2) rows.front().push_back(name);
-    rows.back().push_back(ms_text(time.sum) + " / " + ms_text(time.overlap) + " " + time.busiest);
-  });
-  return "\nmodelled ms: one stage after the other / all at once, and the busiest unit\n" + align_columns(rows, {0});
-}
-
-Json times_json(const Report& report) {
-  Json json = Json::array();
-  for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
-    Json stages;
-    for (const StageTime& each : time.stages) stages[name_of(each.stage)] = each.ms;
-    json.push_back({{"technique", result.technique},
-                    {"implementation", name},
-                    {"sum", time.sum},
-                    {"overlap", time.overlap},
-                    {"busiest", time.busiest},
-                    {"stages", stages}});
-  });
-  return json;
 }
 
 std::string causes_text(const Report& report) {

@@ -12,12 +12,6 @@ namespace beampipe {
 // A row of titles and one row per technique. `folder` is put in front of the pictures' paths.
 std::string table_text(const Report& report, const std::string& folder);
 
-// Modelled milliseconds on each described hardware, side by side: a row per technique, and for each implementation one
-// stage after the other, all stages at once, and the busiest unit. Means over the frames; the unit is that of the
-// first. The reference has no row.
-std::string times_text(const Report& report);
-Json times_json(const Report& report);
-
 // The results of --causes and --orders, each after an empty line, or "" if they were not asked for.
 std::string causes_text(const Report& report);
 std::string orders_text(const Report& report);

@@ -46,6 +46,7 @@ CountedCell render_cell(const SweepPlan& plan, const SweepCell& cell, const Load
     report.stages = std::move(result.stages);
     report.pixels = std::uint64_t{result.image.width} * result.image.height;
     report.bin_pixels = result.bin_pixels;
+    report.bin_operations = std::move(result.bin_operations);
     counts.report.frames.push_back(std::move(report));
   }
   return counts;
@@ -98,9 +99,8 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
     pixels += std::uint64_t{loaded->trace.frames[frame].width} * loaded->trace.frames[frame].height;
   std::vector<VariantPictures> pictures;
   for (const PictureVariant& variant : results.variants(job.trace, job.size)) {
-    MemoryParameters memory;
+    MemoryParameters memory = variant.memory();
     memory.modelled = false;
-    memory.bin_pixels = variant.bin_pixels;
     pictures.push_back({parse_technique(plan.techniques[variant.technique]), memory, ErrorAccumulator(pixels)});
   }
 

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char *kTraces = "traces", *kTechniques = "techniques", *kSizes = "sizes", *kHardware = "hardware",
                      *kImplementations = "implementations", *kMemorySystem = "memory_system";
-constexpr const char* kDefault = "default";  // the name of the default memory system
 constexpr const char* kClock = "clock_mhz";  // is varied like a rate
 constexpr const char *kRows = "rows of the table", *kKinds = "kinds of hardware";
 constexpr std::uint32_t kMostPixels = 16384;
@@ -60,7 +59,6 @@ void add_axes(ObjectForm<T>& grid, Place axes) {
   add(kSizes, "Sizes of the picture, WIDTHxHEIGHT. Default: each trace's own.", text);
   add(kHardware, "Built-in names, or files. Default: titan_v.", text);
   add(kImplementations, "Names in the descriptions of hardware. Default: all.", text);
-  add(kMemorySystem, "Files, or default.", text);
   const std::string of_hardware = std::string(kHardware) + ".", of_memory = std::string(kMemorySystem) + ".";
   add(of_hardware + kClock, "Replaces the hardware's clock, in MHz.", rate);
   for (const auto& [name, meaning] : hardware_rates()) add(of_hardware + name, "Replaces the rate: " + meaning, rate);
@@ -178,8 +176,7 @@ class PlanReader {
     limit_combinations(axes, "", kMostRows, grid, kRows);
     limit_combinations(axes, kHardware, kMostHardware, grid, kKinds);
 
-    const std::vector<std::size_t> memory = read_memory(grid, axes);
-    const std::vector<std::size_t> hardware = read_hardware_axes(axes);
+    const std::vector<System> systems = read_systems(grid, axes);
     std::vector<std::size_t> sizes = {0};
     if (plan_.sizes.empty()) plan_.sizes.push_back({});
     if (axes.contains(kSizes)) {
@@ -193,9 +190,9 @@ class PlanReader {
     for (const std::size_t trace : traces)
       for (const std::size_t size : sizes)
         for (const std::size_t technique : techniques)
-          for (const std::size_t system : memory) {
-            const std::size_t cell = add_cell({trace, size, technique, system});
-            for (const std::size_t each : hardware) {
+          for (const System& system : systems) {
+            const std::size_t cell = add_cell({trace, size, technique, system.memory});
+            for (const std::size_t each : system.hardware) {
               add_rows(cell, each, axes);
               if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kRows);
             }
@@ -229,20 +226,23 @@ class PlanReader {
     return index_in(plan_.techniques, spec);
   }
 
-  std::vector<std::size_t> read_memory(const JsonCursor& grid, const Axes& axes) {
-    std::vector<MemoryParameters> systems = {{}};
-    if (axes.contains(kMemorySystem)) {
-      systems.clear();
-      for (const JsonCursor& name : axes.at(kMemorySystem))
-        systems.push_back(name.string() == kDefault ? MemoryParameters{}
-                                                    : read_memory_system(beside(plan_.file, name.string())));
-    }
-    std::vector<std::size_t> numbers;
-    for (const MemoryParameters& system : systems)
+  // A memory system, and all hardware that has it.
+  struct System {
+    std::size_t memory;
+    std::vector<std::size_t> hardware;
+  };
+
+  std::vector<System> read_systems(const JsonCursor& grid, const Axes& axes) {
+    std::vector<System> systems;
+    for (const std::size_t hardware : read_hardware_axes(axes))
       each_combination(axes, std::string(kMemorySystem) + ".", [&](const auto& values) {
-        numbers.push_back(add_memory(with_parameters(system, values, grid)));
+        const std::size_t memory = add_memory(with_parameters(plan_.hardware[hardware].memory, values, grid));
+        const auto is_it = [&](const System& system) { return system.memory == memory; };
+        const auto found = std::find_if(systems.begin(), systems.end(), is_it);
+        System& system = found == systems.end() ? systems.emplace_back(System{memory, {}}) : *found;
+        system.hardware.push_back(hardware);
       });
-    return numbers;
+    return systems;
   }
 
   std::size_t add_memory(const MemoryParameters& memory) {

@@ -61,7 +61,7 @@ bool counts_the_same(const MemoryParameters& wanted, const MemoryParameters& ren
 std::vector<PictureVariant> SweepResults::variants(std::size_t trace, std::size_t size) const {
   std::set<PictureVariant> found;
   for (const SweepCell& cell : plan_.cells)
-    if (cell.trace == trace && cell.size == size) found.insert({cell.technique, plan_.memory[cell.memory].bin_pixels});
+    if (cell.trace == trace && cell.size == size) found.emplace(cell.technique, plan_.memory[cell.memory]);
   return {found.begin(), found.end()};
 }
 
@@ -77,7 +77,8 @@ Json SweepResults::key_of_errors(std::size_t trace, std::size_t size) const {
   const TraceInfo& info = shelf_.info(trace, size);
   Json pictures = Json::array();
   for (const PictureVariant& variant : variants(trace, size))
-    pictures.push_back({{"technique", plan_.techniques[variant.technique]}, {"bin_pixels", variant.bin_pixels}});
+    pictures.push_back(
+        {{"technique", plan_.techniques[variant.technique]}, {"memory_system", parameters_json(variant.memory())}});
   return {{"trace", info.digest}, {"frames", info.frames}, {"pictures", pictures}};
 }
 

@@ -30,7 +30,24 @@ struct PictureErrors {
 // Pictures depend on the bins, and on nothing else of a memory system.
 struct PictureVariant {
   std::size_t technique;  // of the plan
-  std::uint32_t bin_pixels;
+  std::uint32_t bin_pixels, on_chip_bytes, bins_per_core;
+  std::optional<Place> framebuffer;
+
+  PictureVariant(std::size_t of_technique, const MemoryParameters& memory)
+      : technique(of_technique),
+        bin_pixels(memory.bin_pixels),
+        on_chip_bytes(memory.on_chip_bytes),
+        bins_per_core(memory.bins_per_core),
+        framebuffer(memory.framebuffer) {}
+
+  // A memory system with these bins.
+  MemoryParameters memory() const {
+    MemoryParameters memory;
+    memory.bin_pixels = bin_pixels, memory.on_chip_bytes = on_chip_bytes, memory.bins_per_core = bins_per_core;
+    memory.framebuffer = framebuffer;
+    return memory;
+  }
+
   auto operator<=>(const PictureVariant&) const = default;
 };
 

@@ -101,6 +101,7 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
   for (const std::string& rate : plan.varied_rates) columns.push_back({"hardware." + rate, "", "as the plan sets it"});
   columns.push_back({"implementation", "", "which units do the work of a stage", true});
   columns.push_back({"modelled_ms", "ms", "modelled time if all stages overlap; the mean over the frames"});
+  columns.push_back({"modelled_scheduled_ms", "ms", "the same, with bins one by one on cores"});
   columns.push_back({"modelled_sum_ms", "ms", "the same, one stage after the other"});
   columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
   return columns;
@@ -108,21 +109,23 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
 
 void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueReport& report,
                   std::vector<Json>& values) {
-  const Hardware& hardware = plan.hardware[row.hardware];
+  Hardware hardware = plan.hardware[row.hardware];
+  hardware.memory = plan.memory[plan.cells[row.cell].memory];
   const Implementation& implementation = hardware.implementations[row.implementation];
   values.emplace_back(hardware.label);
   for (const std::string& rate : plan.varied_rates)
     values.emplace_back(rate == "clock_mhz" ? hardware.clock_mhz : hardware.rates.at(rate));
   values.emplace_back(implementation.name);
-  double overlap = 0, sum = 0, longest = -1;
+  double overlap = 0, scheduled = 0, sum = 0, longest = -1;
   std::string busiest;
   for (const FrameReport& frame : report.frames) {
-    const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.open_pixel_bytes());
-    overlap += time.overlap_ms, sum += time.sum_ms;
+    const ModelledTime time = modelled_time(hardware, implementation, frame.work());
+    overlap += time.overlap_ms, scheduled += time.scheduled_ms, sum += time.sum_ms;
     if (time.overlap_ms > longest) longest = time.overlap_ms, busiest = time.busiest;
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
   values.emplace_back(overlap / frames);
+  values.emplace_back(scheduled / frames);
   values.emplace_back(sum / frames);
   values.emplace_back(busiest);
 }
@@ -139,11 +142,11 @@ class ErrorTable {
       std::map<PictureVariant, PictureErrors> errors;
       if (const auto stored = results_.errors(cell.trace, cell.size)) {
         const std::vector<PictureVariant> variants = results_.variants(cell.trace, cell.size);
-        for (std::size_t i = 0; i < variants.size(); ++i) errors[variants[i]] = (*stored)[i];
+        for (std::size_t i = 0; i < variants.size(); ++i) errors.emplace(variants[i], (*stored)[i]);
       }
       found = known_.emplace(key, std::move(errors)).first;
     }
-    const auto errors = found->second.find({cell.technique, plan_.memory[cell.memory].bin_pixels});
+    const auto errors = found->second.find(PictureVariant(cell.technique, plan_.memory[cell.memory]));
     return errors == found->second.end() ? nullptr : &errors->second;
   }
 

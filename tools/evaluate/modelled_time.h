@@ -1,0 +1,55 @@
+// Modelled time: the work of each stage, divided by the rates of described hardware.
+//
+// A stage takes as long as its busiest unit. A core works on several bins at a time; where its memory has no room for
+// as many, the stages that work on pixels wait as much longer. The model knows no latency, no divergence within warps
+// and no driver. Its times are therefore lower bounds, and the ratios between them say more than the times themselves.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stages/cost/counters.h"
+#include "tools/evaluate/hardware.h"
+
+namespace beampipe {
+
+// What a frame's time depends on.
+struct FrameWork {
+  const std::vector<StageCounters>& stages;
+  double bin_bytes = 0;                                // that the pixels of a bin take on chip; 0: they are in memory
+  std::span<const std::uint64_t> bin_operations = {};  // of all stages of a bin, in the order in which bins are drawn
+};
+
+// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...).
+std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
+                                         const StageCounters& stage, double bin_bytes = 0);
+
+// How many bins of that size a core has room for, at most as many as it works on at a time, and at least one.
+std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes);
+
+// How much longer the busiest of `cores` works than they do on average. Bins start in their order, each on the core
+// that is free first. 1 if there is no work.
+double imbalance(std::span<const std::uint64_t> bin_operations, std::uint32_t cores);
+
+struct StageTime {
+  Stage stage;
+  double ms = 0;
+  std::string busiest;  // the name of the unit that takes so long
+};
+
+struct ModelledTime {
+  double overlap_ms = 0;  // all stages at once, evenly on all cores: the time of the busiest unit, over all stages
+  // After vertex_setup come the bins, each on a core of its own with all its stages at once. L2 and DRAM belong to all
+  // cores. A bin's share of the cores' work is its share of the operations.
+  double scheduled_ms = 0;
+  double sum_ms = 0;              // one stage after the other: the sum of `stages`
+  std::string busiest;            // the unit of overlap_ms
+  std::vector<StageTime> stages;  // in the order of the stages
+};
+
+ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work);
+
+}  // namespace beampipe

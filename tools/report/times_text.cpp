@@ -1,0 +1,203 @@
+#include "tools/report/times_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/modelled_time.h"
+#include "tools/evaluate/sensitivity.h"
+#include "tools/files/format.h"
+#include "tools/report/report_text.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::size_t kRatesShown = 8;  // of the sensitivity's table
+
+// Milliseconds with three decimals, or two significant digits if that is more.
+std::string ms_text(double ms) { return format(ms < 0.01 ? "%.2g" : "%.3f", ms); }
+
+std::string interval_text(const Interval& interval, std::string (*text)(double)) {
+  return text(interval.low) + " to " + text(interval.high);
+}
+
+std::string ratio_text(double ratio) { return format("%.2f", ratio); }
+
+// The mean over the frames.
+double mean_sum_ms(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result) {
+  double sum = 0;
+  for (const FrameReport& frame : result.frames)
+    sum += modelled_time(hardware, hardware.implementations[implementation], frame.work()).sum_ms;
+  return sum / static_cast<double>(result.frames.size());
+}
+
+std::vector<double> mean_sums_ms(const std::vector<Hardware>& all, std::size_t implementation,
+                                 const TechniqueReport& result) {
+  std::vector<double> sums;
+  for (const Hardware& hardware : all) sums.push_back(mean_sum_ms(hardware, implementation, result));
+  return sums;
+}
+
+// A rate at the ends of its range.
+struct RateEffect {
+  std::string rate;
+  double low = 0, high = 0;  // quotients of times
+
+  double size() const { return std::abs(std::log(high / low)); }
+};
+
+struct Quotient {
+  double value = 0;
+  Interval interval;
+  std::vector<RateEffect> effects;  // the greatest first
+};
+
+// A row of the table.
+struct Row {
+  const TechniqueReport& result;
+  const Implementation& implementation;
+  ModelledTime mean = {};  // of the frames; units and stages of the first
+  double times_longer = 0;
+  Interval interval = {};
+  std::optional<Quotient> quotient = {};
+};
+
+class Rows {
+ public:
+  Rows(const Report& report, const TimesOptions& options)
+      : report_(report), options_(options), draws_(drawn_hardware(report.hardware)) {
+    for (const TechniqueReport& result : report.results)
+      if (result.technique == options.over) over_ = &result;
+    if (!options.over.empty() && (!over_ || over_->frames.empty()))
+      throw std::runtime_error("--over " + options.over + ": expected a technique of the run");
+    if (options.sensitivity) ends_ = ends_of_ranges(report.hardware);
+  }
+
+  std::vector<Row> all() const {
+    std::vector<Row> rows;
+    for (const TechniqueReport& result : report_.results)
+      for (std::size_t i = 0; i < report_.hardware.implementations.size(); ++i)
+        if (result.technique != kReferenceSpec && !result.frames.empty()) rows.push_back(row_of(result, i));
+    return rows;
+  }
+
+ private:
+  Row row_of(const TechniqueReport& result, std::size_t i) const {
+    const Hardware& hardware = report_.hardware;
+    Row row{result, hardware.implementations[i]};
+    const auto frames = static_cast<double>(result.frames.size());
+    for (const FrameReport& frame : result.frames) {
+      const ModelledTime time = modelled_time(hardware, row.implementation, frame.work());
+      if (row.mean.stages.empty()) row.mean.stages = time.stages, row.mean.busiest = time.busiest;
+      row.mean.sum_ms += time.sum_ms / frames;
+      row.mean.scheduled_ms += time.scheduled_ms / frames;
+      row.mean.overlap_ms += time.overlap_ms / frames;
+      row.times_longer += imbalance(frame.bin_operations, hardware.memory.cores) / frames;
+    }
+    const std::vector<double> drawn = mean_sums_ms(draws_, i, result);
+    row.interval = middle_of(drawn);
+    if (over_ && over_ != &result) row.quotient = quotient_of(result, i, drawn, row.mean.sum_ms);
+    return row;
+  }
+
+  Quotient quotient_of(const TechniqueReport& result, std::size_t i, std::vector<double> drawn, double ms) const {
+    const std::vector<double> of_over = mean_sums_ms(draws_, i, *over_);
+    for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k] /= of_over[k];
+    Quotient quotient{ms / mean_sum_ms(report_.hardware, i, *over_), middle_of(drawn), {}};
+    for (const RateEnds& ends : ends_) {
+      const auto at = [&](const Hardware& end) { return mean_sum_ms(end, i, result) / mean_sum_ms(end, i, *over_); };
+      quotient.effects.push_back({ends.rate, at(ends.low), at(ends.high)});
+    }
+    std::stable_sort(quotient.effects.begin(), quotient.effects.end(),
+                     [](const RateEffect& a, const RateEffect& b) { return a.size() > b.size(); });
+    return quotient;
+  }
+
+  const Report& report_;
+  const TimesOptions& options_;
+  std::vector<Hardware> draws_;
+  std::vector<RateEnds> ends_;
+  const TechniqueReport* over_ = nullptr;
+};
+
+std::string room_text(const Report& report, const TechniqueReport& result) {
+  const double bytes = result.frames.front().open_pixel_bytes();
+  if (!result.pixels_on_chip || bytes == 0) return "in memory";
+  return format("%.1f KiB, %u of %u bins", bytes / 1024, bins_held(report.memory, bytes), report.memory.bins_per_core);
+}
+
+std::string quotient_text(const Quotient& quotient) {
+  const bool is_even = quotient.interval.low <= 1 && quotient.interval.high >= 1;
+  return ratio_text(quotient.value) + " (" + interval_text(quotient.interval, ratio_text) + ")" +
+         (is_even ? ", even" : "");
+}
+
+std::string sensitivity_text(const std::vector<Row>& all, const std::string& over) {
+  std::string text;
+  for (const Row& row : all) {
+    if (!row.quotient || row.quotient->effects.empty()) continue;
+    std::vector<std::vector<std::string>> rows = {{"rate", "lowest", "highest"}};
+    for (const RateEffect& effect : row.quotient->effects)
+      if (rows.size() <= kRatesShown) rows.push_back({effect.rate, ratio_text(effect.low), ratio_text(effect.high)});
+    text += "\n" + row.result.technique + " over " + over + ", " + row.implementation.name + ": " +
+            ratio_text(row.quotient->value) + "; with one rate at the ends of its range\n" + align_columns(rows, {0});
+  }
+  return text;
+}
+
+Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
+
+}  // namespace
+
+std::string times_text(const Report& report, const TimesOptions& options) {
+  const std::vector<Row> all = Rows(report, options).all();
+  std::vector<std::vector<std::string>> rows = {
+      {"technique", "implementation", "in turn", "nine in ten", "on cores", "at once", "busiest", "uneven", "on chip"}};
+  if (!options.over.empty()) rows.front().push_back("in turn over " + options.over);
+  for (const Row& row : all) {
+    rows.push_back({row.result.technique, row.implementation.name, ms_text(row.mean.sum_ms),
+                    interval_text(row.interval, ms_text), ms_text(row.mean.scheduled_ms), ms_text(row.mean.overlap_ms),
+                    row.mean.busiest, ratio_text(row.times_longer), room_text(report, row.result)});
+    if (!options.over.empty()) rows.back().push_back(row.quotient ? quotient_text(*row.quotient) : "");
+  }
+  const std::string title = "\nmodelled ms on " + report.hardware.label + " (" + report.hardware.name + ")\n";
+  return title + align_columns(rows, {0, 1, 6, 8, 9}) +
+         (options.sensitivity ? sensitivity_text(all, options.over) : "");
+}
+
+Json times_json(const Report& report, const TimesOptions& options) {
+  Json json = Json::array();
+  for (const Row& row : Rows(report, options).all()) {
+    Json stages, units;
+    for (const StageTime& each : row.mean.stages) {
+      stages[name_of(each.stage)] = each.ms;
+      units[name_of(each.stage)] = each.busiest;
+    }
+    Json of_row = {{"technique", row.result.technique},
+                   {"hardware", report.hardware.label},
+                   {"implementation", row.implementation.name},
+                   {"sum", row.mean.sum_ms},
+                   {"sum_interval", interval_json(row.interval)},
+                   {"scheduled", row.mean.scheduled_ms},
+                   {"overlap", row.mean.overlap_ms},
+                   {"busiest", row.mean.busiest},
+                   {"imbalance", row.times_longer},
+                   {"stages", stages},
+                   {"busiest_units", units}};
+    const double bytes = row.result.frames.front().open_pixel_bytes();
+    of_row["bin_bytes"] = bytes;
+    if (bytes > 0) of_row["bins_held"] = bins_held(report.memory, bytes);
+    if (row.quotient) {
+      of_row["ratio"] = row.quotient->value;
+      of_row["ratio_interval"] = interval_json(row.quotient->interval);
+      for (const RateEffect& effect : row.quotient->effects)
+        of_row["ratio_at_ends"][effect.rate] = Json::array({effect.low, effect.high});
+    }
+    json.push_back(of_row);
+  }
+  return json;
+}
+
+}  // namespace beampipe
