@@ -24,8 +24,8 @@ ROUNDS = [f"{technique}:{samples}" for technique in ("acaa", "msaa") for samples
 WIDTHS = [320, 1280, 1920, 3840]
 SHADER = "acaa:8,coverage=shader"
 PARTS = ["titan_v", "mali_g710"]
-TILE_BYTES = 16384  # half of the 32 KiB of a core of a Mali-G610 (docs/costs.md)
-TILES = [("msaa:8", 8), ("msaa:8,prepass", 8), ("acaa:8", 8), ("acaa:8", 16)]  # msaa:8 would need 20 KiB at 16 x 16
+MALI = pathlib.Path(__file__).resolve().parent.parent / "tools/evaluate/hardware/mali_g710.json"
+TILES = [("msaa:8", 8), ("msaa:8,prepass", 8), ("acaa:8", 8), ("acaa:8", 16)]  # two tiles of msaa:8 do not fit at 16
 
 
 def dram_bytes(result, stages=None):
@@ -80,12 +80,12 @@ def tiles(program, traces, folder):
     measure.print_head("scene", "technique", "tile", "KiB", "bin pairs", "DRAM MB", "ms")
     for trace in traces:
         for spec, side in TILES:
-            system = f"{folder}/system.json"
-            pathlib.Path(system).write_text(json.dumps({
-                "beampipe_memory_system": 1, "parameters": {"bin_pixels": side, "on_chip_bytes": TILE_BYTES},
-                "sources": {"bin_pixels": "choice", "on_chip_bytes": "half of the tile memory of a core"}}))
-            result = measure.results(program, "run", trace, [spec], folder, "--hardware", "mali_g710",
-                                     "--memory-system", system, "--framebuffer", "on-chip")[spec]
+            part = json.loads(MALI.read_text())
+            part["memory_system"]["parameters"]["bin_pixels"] = side
+            part["memory_system"]["sources"]["bin_pixels"] = "choice"
+            file = pathlib.Path(folder) / "part.json"
+            file.write_text(json.dumps(part))
+            result = measure.results(program, "run", trace, [spec], folder, "--hardware", file)[spec]
             frame = result["frames"][0]
             pairs = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "bin_lists") // 4
             kib = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels") / 1024

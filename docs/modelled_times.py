@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 """Makes tables of docs/*.md from finished runs: modelled times on several parts, and their ratios.
 
-usage: docs/modelled_times.py times  PROGRAM [--hardware A,B,...] DIR...
-       docs/modelled_times.py bins   PROGRAM [--hardware A,B,...] DIR...
-       docs/modelled_times.py errors PROGRAM [--hardware A,B,...] DIR...
-       docs/modelled_times.py beam   PROGRAM [--hardware A,B,...] DIR...
-       docs/modelled_times.py traffic PROGRAM [--hardware A,B,...] DIR...
+usage: docs/modelled_times.py TABLE PROGRAM DIR...
 
-PROGRAM is for instance beampipe; `beampipe run TRACE -t SPEC... -o DIR` wrote the folders. `times` prints milliseconds,
-and the equivalent MSAA rate where `beampipe compare` wrote the folder.
-`bins` adds what a bin has on chip. `errors` divides times by that of the published pipeline, beside the paper's ratios.
-`beam` divides the times of beam by those of MSAA, for several prices of shading. `traffic` prints what a bin has on chip,
-DRAM bytes of geometry and of the rest, and milliseconds.
+PROGRAM is for instance beampipe. The folders are PART/SCENE, as `beampipe run TRACE -t SPEC... --hardware PART -o
+PART/SCENE` wrote them; those of one scene stand side by side. TABLE is one of these:
+
+times    milliseconds with their intervals, and the equivalent MSAA rate where `beampipe compare` wrote the first folder
+cores    milliseconds in turn, on cores and at once, and how unevenly bins fill the cores
+bins     what a bin has on chip, and milliseconds
+errors   times over that of the published pipeline, beside the paper's ratios
+beam     times of beam over those of MSAA, for several prices of shading
+traffic  what a bin has on chip, DRAM bytes of geometry and of the rest, and milliseconds
 """
 import argparse
 import json
@@ -25,31 +25,44 @@ BASE = "casav"
 COSTS = (0, 1000, 10000)  # operations per invocation
 GEOMETRY = {"vertex_setup", "bin_sort", "conservative_raster", "sample_raster", "beam_fragment", "shade"}
 BEAM, MSAA = "beam", ("msaa:8", "msaa:8,prepass")
-SMALL_BINS = {"mali_g710": "beam:bin=16"}  # parts without room for two bins of `beam`
-
-
-def model(program, hardware, folders, cost=0):
-    """By folder: the times by technique, and by implementation within it."""
-    text = subprocess.run([program, "model", *folders, "--json", "--hardware", hardware, "--material-cost", str(cost)],
-                          check=True, capture_output=True, text=True).stdout
-    found = {}
-    for report in json.loads(text):
-        times = found.setdefault(report["folder"], {})
-        for time in report["times"]:
-            times.setdefault(time["technique"], {})[time["implementation"]] = time
-    return found
-
-
-def cells_of(times):
-    return [f"{time['sum']:.3f} ({time['busiest']})" for time in times.values()]
-
-
-def names_of(times):
-    return [f"`{name}`" for name in next(iter(times.values()))]
 
 
 def scene_of(folder):
     return folder.rstrip("/").rsplit("/", 1)[-1]
+
+
+def model(program, folders, *options):
+    """By scene: the times by technique, and by PART.IMPLEMENTATION within it."""
+    text = subprocess.run([program, "model", *folders, "--json", *options], check=True, capture_output=True,
+                          text=True).stdout
+    found = {}
+    for report in json.loads(text):
+        times = found.setdefault(scene_of(report["folder"]), {})
+        for time in report["times"]:
+            times.setdefault(time["technique"], {})[f"{time['hardware']}.{time['implementation']}"] = time
+    return found
+
+
+def first_folders(folders):
+    """By scene: the first of its folders."""
+    first = {}
+    for folder in folders:
+        first.setdefault(scene_of(folder), folder)
+    return first
+
+
+def cells_of(times, names):
+    """Milliseconds with their interval, and the busiest unit."""
+    return [f"{time['sum']:.3f} ({time['sum_interval'][0]:.3g} to {time['sum_interval'][1]:.3g}, {time['busiest']})"
+            for time in (times[name] for name in names)]
+
+
+def names_of(times):
+    return list(next(iter(times.values())))
+
+
+def quoted(names):
+    return [f"`{name}`" for name in names]
 
 
 def results_of(folder):
@@ -65,52 +78,68 @@ def emr_of(result):
     return f"{bound}{result['equivalent_msaa']:.3g}"
 
 
-def times(program, hardware, folders):
-    for folder, found in model(program, hardware, folders).items():
-        emr = {result["technique"]: emr_of(result) for result in results_of(folder)}
-        print_head("technique", "EMR", *names_of(found))
+def times(program, folders):
+    first = first_folders(folders)
+    for scene, found in model(program, folders).items():
+        emr = {result["technique"]: emr_of(result) for result in results_of(first[scene])}
+        names = names_of(found)
+        print_head("technique", "EMR", *quoted(names))
         for technique, of in found.items():
-            print_row(f"`{technique}`", emr[technique], *cells_of(of))
+            print_row(f"`{technique}`", emr[technique], *cells_of(of, names))
+
+
+def cores(program, folders):
+    print_head("scene", "part", "technique", "in turn", "on cores", "at once", "busiest core, over the mean")
+    for scene, found in model(program, folders).items():
+        for technique, of in found.items():
+            for name, time in of.items():
+                print_row(scene, f"`{name}`", f"`{technique}`",
+                          *(f"{time[how]:.3f}" for how in ("sum", "scheduled", "overlap")), f"{time['imbalance']:.2f}")
 
 
 def kib_per_bin(result):
     return sum(buffer["peak_bytes"] for buffer in result["frames"][0]["buffers"] if buffer["held"] == "bin") / 1024
 
 
-def bins(program, hardware, folders):
-    for folder, found in model(program, hardware, folders).items():
-        kib = {result["technique"]: kib_per_bin(result) for result in results_of(folder)}
-        print_head("technique", "KiB per bin", *names_of(found))
+def bins(program, folders):
+    first = first_folders(folders)
+    for scene, found in model(program, folders).items():
+        kib = {result["technique"]: kib_per_bin(result) for result in results_of(first[scene])}
+        names = names_of(found)
+        print_head("technique", "KiB of a bin", "bins held", *quoted(names))
         for technique, of in found.items():
-            print_row(f"`{technique}`", f"{kib[technique]:.0f}", *cells_of(of))
+            held = next(iter(of.values())).get("bins_held", "none")
+            print_row(f"`{technique}`", f"{kib[technique]:.0f}", held, *cells_of(of, names))
 
 
-def errors(program, hardware, folders):
+def errors(program, folders):
     rates = [technique for technique in PUBLISHED_MS if technique != BASE]
-    print_head("", *(f"`{technique}`" for technique in rates))
+    print_head("", *quoted(rates))
     print_row("published", *(f"{PUBLISHED_MS[technique] / PUBLISHED_MS[BASE]:.2f}" for technique in rates))
-    for folder, found in model(program, hardware, folders).items():
+    for scene, found in model(program, folders, "--over", BASE).items():
         for name in found[BASE]:
             cells = []
             for technique in rates:
-                ratio = found[technique][name]["sum"] / found[BASE][name]["sum"]
-                cells.append(f"{ratio:.2f} ({100 * (ratio * PUBLISHED_MS[BASE] / PUBLISHED_MS[technique] - 1):+.0f} %)")
-            print_row(f"{scene_of(folder)}, `{name}`", *cells)
+                time = found[technique][name]
+                off = 100 * (time["ratio"] * PUBLISHED_MS[BASE] / PUBLISHED_MS[technique] - 1)
+                low, high = time["ratio_interval"]
+                cells.append(f"{time['ratio']:.2f} ({low:.2f} to {high:.2f}; {off:+.0f} %)")
+            print_row(f"{scene}, `{name}`", *cells)
 
 
-def beam(program, hardware, folders):
-    by_cost = {cost: model(program, hardware, folders, cost) for cost in COSTS}
-    names = list(by_cost[0][folders[0]][BEAM])
+def beam(program, folders):
     print_head("ratio", "part", *COSTS)
     for msaa in MSAA:
-        for name in names:
+        by_cost = {cost: model(program, folders, "--material-cost", str(cost), "--over", msaa) for cost in COSTS}
+        scenes = list(by_cost[0])
+        for name in by_cost[0][scenes[0]][BEAM]:
             cells = []
-            technique = SMALL_BINS.get(name.split(".")[0], BEAM)
             for cost in COSTS:
-                of = [by_cost[cost][folder] for folder in folders]
-                each = [found[technique][name]["sum"] / found[msaa][name]["sum"] for found in of]
-                cells.append(f"{min(each):.2f} to {max(each):.2f}")
-            print_row(f"`{technique}` / `{msaa}`", f"`{name}`", *cells)
+                of = [by_cost[cost][scene][BEAM][name] for scene in scenes]
+                ratios = [time["ratio"] for time in of]
+                low, high = min(time["ratio_interval"][0] for time in of), max(time["ratio_interval"][1] for time in of)
+                cells.append(f"{min(ratios):.2f} to {max(ratios):.2f} ({low:.2f} to {high:.2f})")
+            print_row(f"`{BEAM}` / `{msaa}`", f"`{name}`", *cells)
 
 
 def dram_megabytes(result):
@@ -124,22 +153,22 @@ def dram_megabytes(result):
     return geometry / 1e6, rest / 1e6
 
 
-def traffic(program, hardware, folders):
-    found = model(program, hardware, folders)
-    print_head("scene", "technique", "KiB per bin", "DRAM MB: geometry", "pixels", *names_of(found[folders[0]]))
-    for folder, times in found.items():
-        for result in results_of(folder):
+def traffic(program, folders):
+    found, first = model(program, folders), first_folders(folders)
+    names = names_of(found[scene_of(folders[0])])
+    print_head("scene", "technique", "KiB per bin", "DRAM MB: geometry", "pixels", *quoted(names))
+    for scene, times_of in found.items():
+        for result in results_of(first[scene]):
             name = result["technique"]
             geometry, pixels = dram_megabytes(result)
-            print_row(scene_of(folder), f"`{name}`", f"{kib_per_bin(result):.0f}", f"{geometry:.1f}", f"{pixels:.1f}",
-                      *(f"{time['sum']:.2f}" for time in times[name].values()))
+            print_row(scene, f"`{name}`", f"{kib_per_bin(result):.0f}", f"{geometry:.1f}", f"{pixels:.1f}",
+                      *(f"{times_of[name][part]['sum']:.2f}" if part in times_of[name] else "" for part in names))
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "bins", "errors", "beam", "traffic"))
+    parser.add_argument("table", choices=("times", "cores", "bins", "errors", "beam", "traffic"))
     parser.add_argument("program")
-    parser.add_argument("--hardware", default="titan_v")
     parser.add_argument("folders", nargs="+")
     options = parser.parse_args()
-    globals()[options.table](options.program, options.hardware, options.folders)
+    globals()[options.table](options.program, options.folders)

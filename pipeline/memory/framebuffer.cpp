@@ -33,12 +33,14 @@ bool Framebuffer::wants_chip(const MemoryParameters& memory) const {
 }
 
 int Framebuffer::bin_size_on(const MemoryParameters& memory) const {
-  int side = std::min(bin_size, static_cast<int>(memory.bin_pixels));
-  if (!wants_chip(memory)) return side;
-  const std::uint64_t all_bins = std::uint64_t{on_chip_bytes_per_pixel()} * memory.bins_per_core;
-  const auto pixels = [&] { return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side); };
-  while (side > kLeastBinSize && all_bins * pixels() > memory.on_chip_bytes) side /= 2;
-  return side;
+  const int largest = std::min(bin_size, static_cast<int>(memory.bin_pixels));
+  int side = largest;
+  const auto has_room_for = [&](std::uint64_t bins) {
+    const auto pixels = static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
+    return bins * pixels * on_chip_bytes_per_pixel() <= memory.on_chip_bytes;
+  };
+  while (wants_chip(memory) && side > kLeastBinSize && !has_room_for(memory.bins_per_core)) side /= 2;
+  return has_room_for(1) ? side : largest;
 }
 
 bool Framebuffer::is_on_chip(const MemoryParameters& memory) const {

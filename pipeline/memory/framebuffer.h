@@ -31,7 +31,8 @@ struct Framebuffer {
   int bin_size = kBinSize;         // the technique's pixels on each side of a bin, even
 
   // That, or those of the memory system if they are smaller. Where pixels are on chip, half of that, and so on, until
-  // as many bins fit as a core works on at a time, or bins are as small as they may be.
+  // as many bins fit as a core works on at a time, or bins are as small as they may be. If not even one of these fits,
+  // pixels are in memory, and bins are not made smaller.
   int bin_size_on(const MemoryParameters& memory) const;
 
   // With all surfaces of a frame with translucent triangles.

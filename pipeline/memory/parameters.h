@@ -104,6 +104,8 @@ struct MemoryParameters {
   // The most pixels on each side of a bin, at most kBinSize. Techniques whose bins are smaller keep them.
   std::uint32_t bin_pixels = kBinSize;
 
+  std::uint64_t bins_in_work() const { return std::uint64_t{cores} * bins_per_core; }
+
   // That hold so many bytes in a row.
   std::uint64_t sectors(std::uint64_t bytes) const {
     return (bytes + sector_bytes - 1) >> std::countr_zero(sector_bytes);

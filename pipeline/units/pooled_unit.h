@@ -68,6 +68,7 @@ class ComposePooledUnit {
     const std::vector<PixelColor> colors = finish_pooled(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     records_.flush(stage_.counters);
+    if (bin_.models_memory() && bin_.keeps_pixels_on_chip()) charge_chunks_in_memory();
     if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
     if (frame_pool_) {
       frame_pool_->add(claims_);
@@ -80,6 +81,18 @@ class ComposePooledUnit {
   }
 
  private:
+  // Beside a pool on chip, a chunk in memory is a request of a sector. L2 holds those of the bins in work, all of which
+  // are taken to have as many as this one; what is beyond it moves to and from DRAM.
+  void charge_chunks_in_memory() {
+    const MemorySystem& memory = bin_.memory();
+    const std::uint64_t bytes = chunks_in_memory_ * memory.sector_bytes;
+    const std::uint64_t held = pixels_.pool.peak_in_memory() * memory.sector_bytes * memory.bins_in_work();
+    if (memory.reach) memory.reach->add({.l2 = held});
+    const std::uint64_t missed = held > memory.l2.bytes ? chunks_in_memory_ * (held - memory.l2.bytes) / held : 0;
+    stage_.streams(missed * memory.sector_bytes);
+    stage_.moves_in_l2(bytes - missed * memory.sector_bytes);
+  }
+
   // What holds for the whole bin, in each of its pixels.
   void report_pool() {
     const auto set = [&](const char* name, double value) {
@@ -102,9 +115,7 @@ class ComposePooledUnit {
   void finish(const PooledResult& result, ShadeUnit& shade) {
     for (const std::uint32_t triangle : result.fetched) bin_.triangle_fetches().depth(triangle, stage_.counters);
     for (const RecordVisit& visit : result.visits) records_.access(visit, stage_.counters);
-    // Beside a pool on chip, a chunk in memory is a request of a sector, which L2 holds.
-    if (bin_.models_memory() && bin_.keeps_pixels_on_chip())
-      stage_.moves_in_l2(result.chunks_in_memory * bin_.memory().sector_bytes);
+    chunks_in_memory_ += result.chunks_in_memory;
     shade.visible(result.shaded);
   }
 
@@ -117,7 +128,7 @@ class ComposePooledUnit {
   PooledPixels<Words> pixels_;
   OpenPixelStore words_;
   RecordMemory records_;
-  std::uint64_t collections_ = 0;
+  std::uint64_t collections_ = 0, chunks_in_memory_ = 0;
   std::vector<PoolClaim> claims_;
 };
 

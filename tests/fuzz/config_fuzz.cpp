@@ -1,11 +1,12 @@
-// Reads any bytes as a sweep plan and, after NULs, as the memory system m.json and the hardware h.json that the plan
-// may name. Each gives an error of one line, or a sound value.
+// Reads any bytes as a sweep plan and, after a NUL, as the hardware h.json that the plan may name. Each gives an error
+// of one line, or a sound value.
 #include <cmath>
 #include <functional>
 
 #include "pipeline/technique.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/evaluate/memory_system.h"
+#include "tools/evaluate/modelled_time.h"
 #include "tools/sweep/sweep_plan.h"
 #include "traces/files/trace_io.h"
 
@@ -40,11 +41,14 @@ void check(const Hardware& hardware) {
     for (const CounterInfo& counter : stage_counters())
       if (std::uint64_t* stored = counter.stored(stage)) *stored = std::uint64_t{1} << 40;
   }
-  require(!hardware.implementations.empty());
+  check(hardware.memory);
+  require(!find_conflict(hardware.memory) && !hardware.implementations.empty());
+  const std::vector<std::uint64_t> bins = {1, std::uint64_t{1} << 40};
   for (const Implementation& implementation : hardware.implementations)
     for (const double bin_bytes : {0.0, 1e6}) {
-      const ModelledTime time = modelled_time(hardware, implementation, stages, bin_bytes);
-      require(std::isfinite(time.sum_ms) && time.overlap_ms > 0 && time.overlap_ms <= time.sum_ms * (1 + 1e-9));
+      const ModelledTime time = modelled_time(hardware, implementation, {stages, bin_bytes, bins});
+      require(std::isfinite(time.sum_ms) && std::isfinite(time.scheduled_ms));
+      require(time.overlap_ms > 0 && time.overlap_ms <= time.sum_ms * (1 + 1e-9));
     }
 }
 
@@ -70,11 +74,9 @@ void check(const SweepPlan& plan) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beampipe;
   static const FuzzFolder folder;
-  const std::vector<std::string_view> parts = parts_of(text_of(data, size), 3);
+  const std::vector<std::string_view> parts = parts_of(text_of(data, size), 2);
   const std::string plan = folder.write("plan.json", parts[0]).string(),
-                    memory = folder.write("m.json", parts[1]).string(),
-                    hardware = folder.write("h.json", parts[2]).string();
-  expect_value_or_line([&] { check(read_memory_system(memory)); });
+                    hardware = folder.write("h.json", parts[1]).string();
   expect_value_or_line([&] { check(read_hardware(hardware)); });
   expect_value_or_line([&] { check(read_sweep_plan(plan)); });
   return 0;

@@ -58,8 +58,7 @@ void make_page(const ReportFile& report) {
 }
 
 void model(const ReportFile& report) {
-  static const std::vector<Hardware> all = {titan_v(), read_hardware("mali_g710")};
-  const Report again = remodelled(report.json, all);
+  const Report again = remodelled(report.json);
   times_text(again);
   times_json(again).dump();
   static const std::vector<Formula> formulas = our_formulas();

@@ -9,6 +9,13 @@ namespace beampipe::framebuffer_test {
 
 constexpr std::uint64_t kBinPixels = 32 * 32;
 
+// Two large bins fit on a core, whatever a pixel takes.
+constexpr MemoryParameters kRoomy = [] {
+  MemoryParameters memory;
+  memory.on_chip_bytes = 1 << 20;
+  return memory;
+}();
+
 // One bin that a single triangle covers.
 Trace covered_bin() {
   return pixel_trace(32, 32, {{{{-10, -10, 0.5}, {100, -10, 0.5}, {-10, 100, 0.5}}, glm::vec3(0.5f)}});
@@ -28,8 +35,9 @@ TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
   const Technique beam = parse_technique("beam");
   const Trace trace = covered_bin();
   MemoryParameters fits, too_small;
-  fits.on_chip_bytes = kBinPixels * kState;
-  too_small.on_chip_bytes = kBinPixels * kState - 1;
+  fits.on_chip_bytes = 2 * kBinPixels * kState;
+  too_small.on_chip_bytes = 64 * kState - 1;
+  too_small.bins_per_core = 1;
 
   const FrameResult on_chip = render_with("beam", trace, fits);
   EXPECT_EQ(stage_of(on_chip, "compose").dram_bytes, 0u);
@@ -45,13 +53,43 @@ TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
   EXPECT_EQ(on_chip.image.rgba, in_memory.image.rgba);
 }
 
+// 46 bytes of a pixel and two bins to a core: 32 x 32 need 94,208 bytes, 16 x 16 a quarter of that, 8 x 8 a sixteenth,
+// and one of 8 x 8 half of that.
+TEST(Framebuffer, BinsAreAsLargeAsFit) {
+  const Framebuffer beam = parse_technique("beam").framebuffer;
+  struct Case {
+    std::uint32_t bytes;
+    int side;
+    bool on_chip;
+  };
+  for (const auto& [bytes, side, on_chip] : {Case{94208, 32, true},
+                                             {94207, 16, true},
+                                             {23552, 16, true},
+                                             {23551, 8, true},
+                                             {5888, 8, true},
+                                             {5887, 8, true},
+                                             {2944, 8, true},
+                                             {2943, 32, false}}) {
+    MemoryParameters memory;
+    memory.on_chip_bytes = bytes;
+    EXPECT_EQ(beam.bin_size_on(memory), side) << bytes;
+    EXPECT_EQ(beam.is_on_chip(memory), on_chip) << bytes;
+    memory.framebuffer = Place::in_memory;
+    EXPECT_EQ(beam.bin_size_on(memory), 32) << bytes;
+  }
+  MemoryParameters phone;
+  phone.on_chip_bytes = 32 * 1024, phone.framebuffer = Place::on_chip;
+  EXPECT_EQ(parse_technique("msaa:4").framebuffer.bin_size_on(phone), 16) << "2 x 256 x 40 bytes";
+  EXPECT_EQ(parse_technique("msaa:8").framebuffer.bin_size_on(phone), 8) << "2 x 64 x 80 bytes";
+}
+
 // The machine decides where pixels are, but not what is drawn or computed.
 TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
   const Trace trace = random_trace(40, 36, 60, 5);
   for (const char* spec : {"beam", "beam:order=stream", "casav:order=near-first", "casav:order=stream", "z3", "msaa:8",
                            "msaa:8,prepass", "acaa:8", "acaa:8,double=stencil", "deferred", "visibility"}) {
     SCOPED_TRACE(spec);
-    MemoryParameters memory;
+    MemoryParameters memory = kRoomy;
     memory.framebuffer = Place::on_chip;
     const FrameResult on_chip = render_with(spec, trace, memory);
     memory.framebuffer = Place::in_memory;
@@ -105,7 +143,7 @@ TEST(Framebuffer, ALayerOfTranslucentTrianglesIsWhereThePixelsAre) {
        {Bytes{"visibility:8", 8 * 8, 0}, Bytes{"visibility", 8, 0}, Bytes{"deferred", 8, 0}, Bytes{"taa:8", 8, 0},
         Bytes{"taa:8,shading=forward", 0, 0}, Bytes{"dvm", 8 * 8, 8}, Bytes{"acaa:8", 0, 0}, Bytes{"msaa:8", 0, 0}}) {
     SCOPED_TRACE(spec);
-    MemoryParameters memory;
+    MemoryParameters memory = kRoomy;
     memory.framebuffer = Place::in_memory;
     EXPECT_EQ(bytes_of(render_with(spec, scene.trace, memory), kTranslucentLayer), kBinPixels * (layer + of_frame));
     EXPECT_EQ(bytes_of(render_with(spec, opaque, memory), kTranslucentLayer), 0u);

@@ -49,7 +49,7 @@ struct SweepArguments {
   int jobs = 0, threads = 0;
   std::uint32_t tasks = 0;
   std::vector<std::string> plots, sbatch;
-  bool slurm = false, merge = false, allow_outside = false;
+  bool slurm = false, dry_run = false, merge = false, allow_outside = false;
 };
 
 // A sweep as the command line asks for it.
@@ -117,11 +117,11 @@ void merge(Sweep& sweep, const std::vector<PlotColumns>& plots) {
   };
   write("table.csv", csv_text(table), "table: ");
   write("table.sqlite", sqlite_bytes(table), "table: ");
-  for (const PlotColumns& columns : plots) {
-    const ScatterPlot plot = sweep_plot(table, columns);
-    for (const std::string& note : plot.notes) std::cerr << "beampipe: note: " << note << "\n";
-    write(plot.name + ".svg", draw(plot, PlotFormat::svg), "plot: ");
-  }
+  for (const PlotColumns& columns : plots)
+    for (const ScatterPlot& plot : sweep_plots(table, columns)) {
+      for (const std::string& note : plot.notes) std::cerr << "beampipe: note: " << note << "\n";
+      write(plot.name + ".svg", draw(plot, PlotFormat::svg), "plot: ");
+    }
   if (table.missing > 0)
     throw std::runtime_error(sweep.arguments.output + ": " + std::to_string(table.missing) + " of " +
                              std::to_string(sweep.plan.rows.size()) +
@@ -162,6 +162,13 @@ void submit(Sweep& sweep, const std::vector<PlotColumns>& plots) {
     request.merge.push_back(plot);
   }
   request.options = arguments.sbatch;
+  if (arguments.dry_run) {
+    write_scripts(request, sweep.output);
+    std::cout << "nothing was submitted; these commands do it, with the number of the first job in place of JOB:\n"
+              << "sbatch " << array_arguments(request, sweep.output) << "\nsbatch "
+              << merge_arguments("JOB", sweep.output) << "\n";
+    return;
+  }
   const SlurmJobs jobs = submit(request, sweep.output);
   std::cout << "submitted: job " << jobs.array << ", " << request.parts.size() << " of " << request.all_parts
             << " tasks, and job " << jobs.merge
@@ -172,6 +179,7 @@ void submit(Sweep& sweep, const std::vector<PlotColumns>& plots) {
 void check(const SweepArguments& arguments) {
   if (arguments.slurm + arguments.merge + !arguments.part.empty() > 1)
     throw UsageError("--slurm, --merge and --part exclude each other");
+  if (arguments.dry_run && !arguments.slurm) throw UsageError("--dry-run: expected --slurm beside it");
   for (const std::string& option : arguments.sbatch) {
     const std::string name = option.substr(0, option.find('='));
     const bool is_name = !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == name.npos;
@@ -213,12 +221,15 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   command.add("--threads", arguments->threads, "threads per cell (default: the cores, shared among the cells)")
       .between(1, 1024);
   command.add("--plot", arguments->plots,
-              "X,Y,BY: draw column Y of the table against column X as SVG, with a line for each value of column BY; "
-              "both axes are logarithmic. May be repeated. Needs the program gnuplot");
+              "X,Y,BY: draw column Y of the table against column X as SVG, with a line for each value of column BY, "
+              "as means over traces and sizes; one plot for each combination of what else is varied. Both axes are "
+              "logarithmic. May be repeated. Needs the program gnuplot");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow traces to name files outside their own folder");
   Command cluster = command.add_group("On several machines, which share the output folder");
   cluster.add_flag("--slurm", arguments->slurm,
                    "submit the sweep to Slurm: an array of tasks, and a job that waits for them and makes the table");
+  cluster.add_flag("--dry-run", arguments.dry_run,
+                   "with --slurm: write the scripts, and print the commands that would submit them");
   cluster
       .add("--tasks", arguments->tasks,
            "the number of tasks (default: one for each group of cells that share a rendering, at most 256)")

@@ -137,7 +137,8 @@ const std::vector<form::Key>& hardware_rates() {
       {"rop_bytes_per_clk", "Bytes of pixels in memory that the ROPs read and write."},
       {"on_chip_bytes_per_clk", "Bytes of pixels on chip that are read and written."},
       {"l2_bytes_per_clk", "Bytes that L2 moves."},
-      {"dram_bytes_per_clk", "Bytes that DRAM moves."},
+      {"dram_bytes_per_clk", "Bytes that DRAM moves at its peak."},
+      {"dram_efficiency", "The part of the peak that requests reach, up to 1."},
   };
   return all;
 }

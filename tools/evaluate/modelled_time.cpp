@@ -86,7 +86,9 @@ const std::map<std::string, Clocks>& units() {
        }},
       {"l2", [](const Rates& rates, const StageWork& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
       {"dram",
-       [](const Rates& rates, const StageWork& s) { return over(s.dram_bytes, rates.at("dram_bytes_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) {
+         return over(s.dram_bytes, rates.at("dram_bytes_per_clk") * rates.at("dram_efficiency"));
+       }},
   };
   return all;
 }

@@ -16,7 +16,8 @@ Json card_of(const TechniqueSummary& summary, const std::string& color) {
                {"bytes_per_pixel", summary.bytes_per_pixel}};
   if (summary.dram_bytes > 0) card["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
   for (const auto& [implementation, ms] : summary.modelled_ms)
-    card["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}, {"busiest", ms.busiest}};
+    card["modelled_ms"][implementation] = {
+        {"overlap", ms.overlap}, {"scheduled", ms.scheduled}, {"sum", ms.sum}, {"busiest", ms.busiest}};
   if (summary.rmse) card["rmse"] = *summary.rmse;
   if (summary.emr) {
     card["emr"] = summary.emr->samples;

@@ -54,8 +54,8 @@ std::string picture_text(const std::vector<Json>& frames, std::uint64_t all) {
 // "ours (Our part, 1455 MHz)"
 std::string hardware_text(const Json& report) {
   const Json& hardware = report.at("hardware");
-  return label_of(report.at("hardware_named").get<std::string>()) + " (" + hardware.at("name").get<std::string>() +
-         ", " + hardware.at("clock_mhz").dump() + " MHz)";
+  return label_of(report.value("hardware_named", std::string("unnamed"))) + " (" +
+         hardware.at("name").get<std::string>() + ", " + hardware.at("clock_mhz").dump() + " MHz)";
 }
 
 std::string memory_text(const Json& memory) {
@@ -82,7 +82,8 @@ std::string memory_options(const Json& report) {
   const Json& memory = report.at("memory_system");
   std::string options;
   if (!memory.at("modelled").get<bool>()) options += " --no-memory-model";
-  const Json described = parameters_json(parse_hardware(*hardware, "report.json").memory);
+  Json described = parameters_json({});
+  for (const auto& [key, value] : hardware->at("memory_system").at("parameters").members()) described[key] = value;
   const auto changed = [&](const char* key) { return memory.at(key) != described.at(key); };
   if (changed("compression")) options += " --no-compression";
   if (changed("framebuffer")) options += " --framebuffer " + memory.at("framebuffer").get<std::string>();

@@ -65,6 +65,12 @@ LogRange range_of(const ScatterPlot& plot, double PlotPoint::*value) {
   return {std::clamp(low / room, kLeast, kMost / 10), std::clamp(high * room, kLeast * 10, kMost)};
 }
 
+std::string tics(const std::vector<double>& at) {
+  std::ostringstream text;
+  for (const double value : at) text << (value == at.front() ? "" : ", ") << value;
+  return text.str();
+}
+
 // The powers of ten, and on short axes also two and five times these: "1, 2, 5, 10".
 std::string tics(const LogRange& range) {
   const bool is_short = std::log10(range.high / range.low) < 2.5;
@@ -134,8 +140,9 @@ void write_frame(std::ostream& script, const std::string& title, const std::stri
 void write_axes(std::ostream& script, const ScatterPlot& plot, const LogRange& x, const LogRange& y) {
   write_frame(script, plot.title, plot.y_label, kRight);
   script << "set xlabel " << quoted(plot.x_label) << "\nset logscale xy\nset xrange [" << x.low << ":" << x.high
-         << "]\nset yrange [" << y.low << ":" << y.high << "]\nset xtics nomirror (" << tics(x)
-         << ")\nset ytics nomirror (" << tics(y) << ")\nset key off\n";
+         << "]\nset yrange [" << y.low << ":" << y.high << "]\nset xtics nomirror ("
+         << (plot.x_ticks.empty() ? tics(x) : tics(plot.x_ticks)) << ")\nset ytics nomirror (" << tics(y)
+         << ")\nset key off\n";
 }
 
 // One data block per series and kind of bound, because each has its own marker.

@@ -29,6 +29,7 @@ struct ScatterPlot {
   std::string title, x_label, y_label;
   std::vector<PlotSeries> series = {};
   std::vector<std::string> notes = {};  // what could not be drawn, one line for each
+  std::vector<double> x_ticks = {};     // empty: round numbers
 };
 
 // Bars of stacked parts, one bar per category. Negative values are stacked on the other side of zero.

@@ -39,12 +39,14 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
                        [&](const TechniqueSummary& summary) { return !summary.modelled_ms.contains(modelled.first); });
   });
   for (auto& [implementation, mean_ms] : mean.modelled_ms) {
-    std::vector<double> overlap, sum;
+    std::vector<double> overlap, scheduled, sum;
     for (const TechniqueSummary& summary : of_one_technique) {
       overlap.push_back(summary.modelled_ms.at(implementation).overlap);
+      scheduled.push_back(summary.modelled_ms.at(implementation).scheduled);
       sum.push_back(summary.modelled_ms.at(implementation).sum);
     }
     mean_ms.overlap = geometric_mean(overlap);
+    mean_ms.scheduled = geometric_mean(scheduled);
     mean_ms.sum = geometric_mean(sum);
   }
   mean.bytes_per_pixel = geometric_mean(bytes);
@@ -135,6 +137,7 @@ TechniqueSummary read_summary(const Json& result) {
     for (const auto& [implementation, time] : times.members()) {
       ModelledMs& mean = summary.modelled_ms[implementation];
       mean.overlap += time.at("overlap").get<double>() / count;
+      mean.scheduled += time.value("scheduled", 0.0) / count;
       mean.sum += time.at("sum").get<double>() / count;
       add_unit(mean.busiest, time.value("busiest", std::string()));
     }

@@ -28,9 +28,10 @@ auto read_from_report(const std::filesystem::path& folder, const Read& read) {
   }
 }
 
-// Modelled milliseconds per frame (the mean over the frames): with all stages at once, and one after the other.
+// Modelled milliseconds per frame (the mean over the frames): with all stages at once, with bins one by one on cores,
+// and one stage after the other.
 struct ModelledMs {
-  double overlap = 0, sum = 0;
+  double overlap = 0, scheduled = 0, sum = 0;
   std::string busiest;  // the unit that limits `overlap`; several, with commas, if they differ from frame to frame
 };
 
@@ -67,8 +68,8 @@ std::string bound_text(const EquivalentMsaa& emr);
 // Summarises one element of the report's "results". Throws JsonError if it is something else.
 TechniqueSummary read_summary(const Json& result);
 
-// The ways of building the pipeline whose times are modelled, in the order of the hardware's description, and then
-// those of further hardware. Empty if nothing was modelled.
+// The ways of building the pipeline whose times are modelled, in the order of the hardware's description. Empty if
+// nothing was modelled.
 std::vector<std::string> implementations_of(const ReportFile& report);
 
 // One object for each technique and stage, in their order: the means over the frames of the numbers in "stages", and

@@ -4,7 +4,9 @@
 #include <cctype>
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/saved_work.h"
 #include "tools/files/csv.h"
 
@@ -75,6 +77,20 @@ const std::vector<Source> kTechniqueColumns = {
     {{"dram_bytes", "DRAM", "bytes per frame",
       "Bytes that move between the modelled caches and DRAM, in either direction: the mean over the frames.", kMemory},
      "/dram_bytes"},
+    {{"dram_geometry_bytes", "of it, geometry", "bytes per frame",
+      "The part of the DRAM bytes that triangles take: their setup and lists, and in the raster stage their reads.",
+      kMemory},
+     "/dram_geometry_bytes"},
+    {{"bin_bytes", "pixels of a bin", "bytes", "What the pixels of a bin take on chip; a dash if they are in memory.",
+      kMemory},
+     "/bin_bytes"},
+    {{"bins_held", "bins held", "bins", "How many bins a core has room for, at most as many as it works on.", kMemory},
+     "/bins_held"},
+    {{"imbalance", "uneven", "ratio",
+      "How much longer the busiest core works than the mean, if bins start in their order on the core that is free "
+      "first.",
+      kTime},
+     "/imbalance"},
     {{"wall_ms", "wall time", "ms per frame",
       "The time of the simulator on the machine that ran it, which says nothing about hardware: the median over the "
       "frames. If each frame was run only once, this includes the time for modelling memory.",
@@ -129,6 +145,10 @@ std::vector<Source> stage_columns(const ReportFile& report) {
         {{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
           "Time that the modelled hardware takes for this stage, which is that of its busiest unit.", kTime},
          "/modelled_ms/" + implementation});
+  for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
+    columns.push_back({{"busiest_unit_" + implementation, "busiest, " + implementation, "",
+                        "The unit that takes so long, in the last frame.", kTime},
+                       "/busiest_unit/" + implementation});
   return columns;
 }
 
@@ -232,10 +252,13 @@ std::vector<Source> with_modelled_times(std::vector<Source> sources, const Repor
     const Source overlap = {{key + "_overlap", title + "overlap", unit,
                              "Modelled time if all stages run at once: the time of the busiest unit.", kTime},
                             pointer + "/overlap"};
+    const Source scheduled = {{key + "_scheduled", title + "on cores", unit,
+                               "Modelled time if bins are drawn one by one on cores, after the geometry.", kTime},
+                              pointer + "/scheduled"};
     const Source sum = {{key + "_sum", title + "sum", unit,
                          "Modelled time if the stages run one after the other: the sum of their times.", kTime},
                         pointer + "/sum"};
-    place = std::next(sources.insert(std::next(place), {overlap, sum}));
+    place = std::next(sources.insert(std::next(place), {overlap, scheduled, sum}));
   }
   return sources;
 }
@@ -252,6 +275,34 @@ std::optional<double> mean_of_frames(const Json& result, std::string_view key) {
   return sum / static_cast<double>(frames.size());
 }
 
+// Of the first frame: what the pixels of a bin take on chip, how many bins have room, and how uneven bins are. The mean
+// over the frames: DRAM bytes of geometry.
+void add_room(const ReportFile& report, const Json& result, Json& record) {
+  const Json* const memory = report.json.find("memory_system");
+  if (!memory || !memory->at("modelled").get<bool>() || result.at("technique") == kReferenceSpec) return;
+  MemoryParameters parameters;
+  parameters.on_chip_bytes = memory->at("on_chip_bytes").get<std::uint32_t>();
+  parameters.bins_per_core = memory->at("bins_per_core").get<std::uint32_t>();
+  const std::vector<Json>& frames = result.at("frames").elements();
+  std::vector<std::uint64_t> operations;
+  const Json of_bins = frames.front().value("bin_operations", Json::array());
+  for (const Json& of_bin : of_bins.elements()) operations.push_back(of_bin.get<std::uint64_t>());
+  record["imbalance"] = imbalance(operations, memory->at("cores").get<std::uint32_t>());
+  for (const Json& buffer : frames.front().at("buffers").elements()) {
+    if (buffer.at("name") != kOpenPixels) continue;
+    const double bytes = buffer.at("peak_bytes").get<double>();
+    record["bin_bytes"] = bytes;
+    record["bins_held"] = bins_held(parameters, bytes);
+  }
+  double geometry = 0;
+  for (const Json& frame : frames)
+    for (const Json& stage : frame.at("stages").elements())
+      if (const auto known = find_stage(std::string_view(stage.at("stage").get<std::string>()));
+          known && (info_of(known->id).group == StageGroup::geometry || info_of(known->id).group == StageGroup::raster))
+        geometry += stage.at("dram_bytes").get<double>();
+  record["dram_geometry_bytes"] = geometry / static_cast<double>(frames.size());
+}
+
 std::vector<Json> technique_records(const ReportFile& report) {
   const double msaa_bytes = parse_technique(msaa_spec(1)).framebuffer_bytes_per_pixel();
   std::vector<Json> records;
@@ -263,8 +314,9 @@ std::vector<Json> technique_records(const ReportFile& report) {
       for (const char* key : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
         if (const std::optional<double> mean = mean_of_frames(result, key)) record[key] = *mean;
     }
+    add_room(report, result, record);
     for (const auto& [implementation, ms] : summary.modelled_ms)
-      record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}};
+      record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"scheduled", ms.scheduled}, {"sum", ms.sum}};
     if (const Json* visibility = result.find("visibility"))
       if (const auto emr = read_emr(*visibility)) record["visibility"]["emr_bound"] = bound_text(*emr);
     if (summary.emr) {

@@ -49,7 +49,7 @@ std::string array_text(const std::vector<std::size_t>& parts) {
   return text;
 }
 
-SlurmJobs submit(const SlurmRequest& request, OutputFolder& output) {
+void write_scripts(const SlurmRequest& request, OutputFolder& output) {
   const std::string logs = (output.path() / "slurm").string();
   std::string merge = "--merge";
   for (const std::string& word : request.merge) merge += " " + shell_word(word);
@@ -58,9 +58,21 @@ SlurmJobs submit(const SlurmRequest& request, OutputFolder& output) {
                                   "\" --jobs \"${SLURM_CPUS_PER_TASK:-1}\" --threads 1"));
   output.write(kMerge, script(request, "beampipe-merge", logs + "/%j_merge.txt", merge));
   output.keep();
+}
+
+std::string array_arguments(const SlurmRequest& request, const OutputFolder& output) {
+  return "--array=" + array_text(request.parts) + " " + shell_word((output.path() / kArray).string());
+}
+
+std::string merge_arguments(const std::string& array, const OutputFolder& output) {
+  return "--dependency=afterany:" + array + " " + shell_word((output.path() / kMerge).string());
+}
+
+SlurmJobs submit(const SlurmRequest& request, OutputFolder& output) {
+  write_scripts(request, output);
   SlurmJobs jobs;
-  jobs.array = sbatch("--array=" + array_text(request.parts) + " " + shell_word((output.path() / kArray).string()));
-  jobs.merge = sbatch("--dependency=afterany:" + jobs.array + " " + shell_word((output.path() / kMerge).string()));
+  jobs.array = sbatch(array_arguments(request, output));
+  jobs.merge = sbatch(merge_arguments(jobs.array, output));
   return jobs;
 }
 

@@ -23,9 +23,15 @@ struct SlurmJobs {
   std::string array, merge;  // their numbers
 };
 
-// Writes slurm/array.sh and slurm/merge.sh into the folder, whose path must be absolute, and submits them. The merge
-// waits until all tasks have ended, in whatever way. Throws std::runtime_error, one line, if sbatch cannot be run or
-// refuses them.
+// Writes slurm/array.sh and slurm/merge.sh into the folder, whose path must be absolute.
+void write_scripts(const SlurmRequest& request, OutputFolder& output);
+
+// What sbatch is given to submit them. `array`: the number of the first job. The merge waits until all tasks have
+// ended, in whatever way.
+std::string array_arguments(const SlurmRequest& request, const OutputFolder& output);
+std::string merge_arguments(const std::string& array, const OutputFolder& output);
+
+// Writes the scripts and submits them. Throws std::runtime_error, one line, if sbatch cannot be run or refuses them.
 SlurmJobs submit(const SlurmRequest& request, OutputFolder& output);
 
 // "0-3,7": such as sbatch takes them.

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
+#include "tools/evaluate/results.h"
 #include "tools/report/colors.h"
 #include "traces/closest_name.h"
 
@@ -51,6 +54,92 @@ std::string title_of(const SweepColumn& column, const AxisUnit& unit) {
 
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
+// Indices of the plot's columns.
+struct Chosen {
+  std::size_t x, y, by;
+};
+
+bool is_axis(const std::string& name) {
+  return name == "technique" || name == "implementation" || name == "hardware" || name.starts_with("hardware.") ||
+         name.starts_with("memory_system.");
+}
+
+// The axes in which rows differ that have the same trace, size, x and line, but not the same y: each of them only if
+// those before it do not tell these rows apart.
+std::vector<std::size_t> facet_columns(const SweepTable& table, const Chosen& chosen) {
+  std::vector<std::size_t> same = {chosen.x, chosen.by}, facets;
+  std::vector<std::size_t> axes;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) (is_axis(table.columns[i].name) ? axes : same).push_back(i);
+  std::erase_if(same, [&](std::size_t column) {
+    const std::string& name = table.columns[column].name;
+    return column != chosen.x && column != chosen.by && name != "trace" && name != "width" && name != "height";
+  });
+  // What is not text goes with hardware rather than the other way round.
+  std::stable_partition(axes.begin(), axes.end(), [&](std::size_t axis) { return table.columns[axis].is_text; });
+  for (const std::size_t axis : axes) {
+    std::map<std::string, std::pair<Json, Json>> found;  // the axis' value and y, by the values of `same`
+    const bool differs = std::any_of(table.rows.begin(), table.rows.end(), [&](const std::vector<Json>& row) {
+      std::string key;
+      for (const std::size_t column : same) key += text_of(row[column]) + "\n";
+      const auto& [value, y] = found.emplace(key, std::pair(row[axis], row[chosen.y])).first->second;
+      return value != row[axis] && y != row[chosen.y];
+    });
+    if (!differs) continue;
+    facets.push_back(axis);
+    same.push_back(axis);
+  }
+  return facets;
+}
+
+// `facet`: "implementation shaders", or "" if there is one plot.
+ScatterPlot plot_of(const SweepTable& table, const PlotColumns& columns, const Chosen& chosen,
+                    const std::string& facet) {
+  constexpr std::size_t kMostTicks = 10;
+  const auto [x, y, by] = chosen;
+  const AxisUnit x_unit = unit_of(table, x), y_unit = unit_of(table, y);
+  struct Logarithms {
+    double sum = 0;
+    int count = 0;
+  };
+  std::vector<std::string> names;  // of the lines, in the order of the table
+  std::map<std::string, std::map<double, Logarithms>> lines;
+  std::set<double> all_x;
+  int left_out = 0, most = 1;
+  for (const std::vector<Json>& row : table.rows) {
+    const bool is_drawn =
+        row[x].is_number() && row[y].is_number() && row[x].get<double>() > 0 && row[y].get<double>() > 0;
+    if (!is_drawn) {
+      ++left_out;
+      continue;
+    }
+    const std::string name = text_of(row[by]);
+    if (!lines.contains(name)) names.push_back(name);
+    Logarithms& at = lines[name][*all_x.insert(row[x].get<double>() / x_unit.size).first];
+    at.sum += std::log(row[y].get<double>() / y_unit.size);
+    most = std::max(most, ++at.count);
+  }
+  std::string file = columns.y + "_against_" + columns.x + "_by_" + columns.by;
+  if (!facet.empty()) file += "_" + spec_folder(facet);
+  ScatterPlot plot{.name = file,
+                   .title = columns.y + " against " + columns.x + ", by " + columns.by +
+                            (facet.empty() ? "" : "; " + facet) +
+                            (most > 1 ? " (geometric means of " + std::to_string(most) + ")" : ""),
+                   .x_label = title_of(table.columns[x], x_unit),
+                   .y_label = title_of(table.columns[y], y_unit)};
+  if (all_x.size() <= kMostTicks) plot.x_ticks.assign(all_x.begin(), all_x.end());
+  for (const std::string& name : names) {
+    PlotSeries& series =
+        plot.series.emplace_back(PlotSeries{.name = name, .color = color_at(plot.series.size()), .line = true});
+    for (const auto& [at, logarithms] : lines[name])
+      series.points.push_back({.x = at, .y = std::exp(logarithms.sum / logarithms.count), .label = ""});
+    series.points.back().label = name;
+  }
+  if (left_out > 0)
+    plot.notes.push_back(std::to_string(left_out) + " rows are not drawn, because " + columns.x + " or " + columns.y +
+                         " is not above 0");
+  return plot;
+}
+
 }  // namespace
 
 PlotColumns parse_plot_columns(const std::string& text, const std::vector<SweepColumn>& columns) {
@@ -65,47 +154,22 @@ PlotColumns parse_plot_columns(const std::string& text, const std::vector<SweepC
   return names;
 }
 
-ScatterPlot sweep_plot(const SweepTable& table, const PlotColumns& columns) {
-  const std::size_t x = index_of(columns.x, table), y = index_of(columns.y, table), by = index_of(columns.by, table);
-  const AxisUnit x_unit = unit_of(table, x), y_unit = unit_of(table, y);
-  struct Logarithms {
-    double sum = 0;
-    int count = 0;
-  };
-  std::vector<std::string> names;  // of the lines, in the order of the table
-  std::map<std::string, std::map<double, Logarithms>> lines;
-  std::size_t left_out = 0, most = 1;
+std::vector<ScatterPlot> sweep_plots(const SweepTable& table, const PlotColumns& columns) {
+  const Chosen chosen{index_of(columns.x, table), index_of(columns.y, table), index_of(columns.by, table)};
+  const std::vector<std::size_t> facets = facet_columns(table, chosen);
+  std::vector<std::pair<std::string, SweepTable>> parts;  // by the values of the facets, in the order of the table
   for (const std::vector<Json>& row : table.rows) {
-    const bool is_drawn =
-        row[x].is_number() && row[y].is_number() && row[x].get<double>() > 0 && row[y].get<double>() > 0;
-    if (!is_drawn) {
-      ++left_out;
-      continue;
-    }
-    const std::string name = text_of(row[by]);
-    if (!lines.contains(name)) names.push_back(name);
-    Logarithms& at = lines[name][row[x].get<double>() / x_unit.size];
-    at.sum += std::log(row[y].get<double>() / y_unit.size);
-    most = std::max<std::size_t>(most, static_cast<std::size_t>(++at.count));
+    std::string name;
+    for (const std::size_t column : facets)
+      name += (name.empty() ? "" : ", ") + table.columns[column].name + " " + text_of(row[column]);
+    const auto is_it = [&](const auto& part) { return part.first == name; };
+    auto found = std::find_if(parts.begin(), parts.end(), is_it);
+    if (found == parts.end()) found = parts.insert(found, {name, SweepTable{table.columns, {}, 0}});
+    found->second.rows.push_back(row);
   }
-  ScatterPlot plot{
-      .name = columns.y + "_against_" + columns.x + "_by_" + columns.by,
-      .title = columns.y + " against " + columns.x + ", by " + columns.by + (most > 1 ? " (geometric means)" : ""),
-      .x_label = title_of(table.columns[x], x_unit),
-      .y_label = title_of(table.columns[y], y_unit),
-      .series = {},
-      .notes = {}};
-  for (const std::string& name : names) {
-    PlotSeries& series =
-        plot.series.emplace_back(PlotSeries{.name = name, .color = color_at(plot.series.size()), .line = true});
-    for (const auto& [at, logarithms] : lines[name])
-      series.points.push_back({.x = at, .y = std::exp(logarithms.sum / logarithms.count), .label = ""});
-    series.points.back().label = name;
-  }
-  if (left_out > 0)
-    plot.notes.push_back(std::to_string(left_out) + " rows are not drawn, because " + columns.x + " or " + columns.y +
-                         " is not above 0");
-  return plot;
+  std::vector<ScatterPlot> plots;
+  for (const auto& [name, part] : parts) plots.push_back(plot_of(part, columns, chosen, name));
+  return plots;
 }
 
 }  // namespace beampipe

@@ -25,16 +25,6 @@ TEST(MemoryParameters, SmallerBinsAreThoseOfTheSpec) {
   EXPECT_EQ(render_with("msaa:8", trace, memory).image.rgba, render_with("msaa:8", trace, {}).image.rgba);
 }
 
-// A bin of 16 x 16 pixels takes a quarter of the room.
-TEST(MemoryParameters, SmallerBinsFitOnChip) {
-  MemoryParameters memory;
-  memory.on_chip_bytes = 66 * 32 * 32 / 2;
-  const Framebuffer beam = parse_technique("beam").framebuffer;
-  EXPECT_FALSE(beam.is_on_chip(memory));
-  memory.bin_pixels = 16;
-  EXPECT_TRUE(beam.is_on_chip(memory));
-}
-
 TEST(MemoryParameters, CachesChangeTrafficAlone) {
   const Trace trace = random_trace(64, 64, 400, 7);
   for (const char* spec : {"beam:order=sorted", "beam:order=stream", "msaa:8", "acaa:8"}) {

@@ -158,6 +158,25 @@ TEST(Beam, SetupIsReadFromNearToFar) {
 
 // Every triangle is set up and binned once, and every pair makes at most one fragment, which is composed once. Nothing
 // reads the setup triangles of a frame twice.
+// With as many bins in work as 65,536 cores have, L2 holds next to nothing of what does not fit into the pools.
+TEST(Beam, RecordsInMemoryThatL2DoesNotHoldMoveThroughDram) {
+  const Trace trace = random_trace(64, 64, 600, 5);
+  MemoryParameters one_core, many_cores;
+  one_core.cores = 1, many_cores.cores = 65536;
+  const FrameResult held = render_with("beam:pool=16", trace, one_core),
+                    missed = render_with("beam:pool=16", trace, many_cores);
+  const StageCounters &a = stage_of(held, "compose"), &b = stage_of(missed, "compose");
+  double chunks = 0;
+  for (const float of_pixel : held.pixel_counters.at("memory_chunks")) chunks += of_pixel;
+  ASSERT_GT(chunks, 100);
+  EXPECT_EQ(a.sector_bytes, b.sector_bytes);
+  EXPECT_EQ(a.l2_bytes, b.l2_bytes);
+  const double moved = static_cast<double>(b.dram_bytes) - static_cast<double>(a.dram_bytes);
+  EXPECT_LE(moved, chunks * 32);
+  EXPECT_GT(moved, 0.9 * chunks * 32);
+  EXPECT_EQ(held.image.rgba, missed.image.rgba);
+}
+
 TEST(Beam, TakesOnePassOverTheGeometry) {
   const Trace trace = random_trace(16, 16, 3000, 2);  // one bin
   const FrameResult result = render("beam", trace);

@@ -521,10 +521,10 @@ TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
   json = run({"--framebuffer", "in-memory"});
   expect(json["results"][0], false, 46);
   expect(json["results"][1], false, 40);
-  json = run({"--on-chip-memory", "45KB"});
-  EXPECT_EQ(json["memory_system"]["on_chip_bytes"], 45 * 1024);
+  json = run({"--on-chip-memory", "2KB"});
+  EXPECT_EQ(json["memory_system"]["on_chip_bytes"], 2048);
   expect(json["results"][0], false, 46);
-  expect(run({"--on-chip-memory", "46KB"})["results"][0], true, 6);
+  expect(run({"--on-chip-memory", "3KB"})["results"][0], true, 6);
 }
 
 }  // namespace beampipe::program_test

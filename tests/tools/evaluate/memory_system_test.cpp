@@ -9,10 +9,9 @@ namespace beampipe::memory_system_test {
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
 MemoryParameters parse(const std::string& parameters, const std::string& sources) {
-  return parse_memory_system(parse_json_text(R"({"beampipe_memory_system": 1, "parameters": {)" + parameters +
-                                                 R"(}, "sources": {)" + sources + "}}",
-                                             "m.json"),
-                             "m.json");
+  const std::string file = "m.json";
+  const Json json = parse_json_text(R"({"parameters": {)" + parameters + R"(}, "sources": {)" + sources + "}}", file);
+  return memory_system_form()(JsonCursor(json, file));
 }
 
 std::string refusal(const std::string& parameters, const std::string& sources = "") {
@@ -26,16 +25,36 @@ TEST(MemorySystem, WhatIsLeftOutIsTheDefault) {
   EXPECT_EQ(parse("\"l2_bytes\": 65536", "\"l2_bytes\": \"choice\""), expected);
 }
 
-TEST(MemorySystem, EveryParameterOfTheExampleArrives) {
-  const MemoryParameters memory = read_memory_system(kSource / "docs/examples/memory_system.json");
+TEST(MemorySystem, EveryParameterArrives) {
   MemoryParameters expected;
   expected.sector_bytes = 64;
   expected.l1 = {16384, 4, 64}, expected.l2 = {1048576, 16, 64}, expected.rop = {65536, 4, 256};
+  expected.compression = false;
+  expected.plane_bytes = 10;
   expected.framebuffer = Place::on_chip;
-  expected.on_chip_bytes = 131072;
+  expected.on_chip_bytes = 131072, expected.bins_per_core = 3, expected.cores = 7;
   expected.bin_pixels = 16;
+  const std::string file = "m.json";
+  const Json json = parse_json_text(R"({"sector_bytes": 64, "line_bytes": 64, "l1_bytes": 16384, "l1_ways": 4,
+    "l2_bytes": 1048576, "l2_ways": 16, "rop_bytes": 65536, "rop_ways": 4, "rop_line_bytes": 256, "compression": false,
+    "plane_bytes": 10, "framebuffer": "on-chip", "on_chip_bytes": 131072, "bins_per_core": 3, "cores": 7,
+    "bin_pixels": 16})",
+                                    file);
+  MemoryParameters memory;
+  set_parameters(memory, JsonCursor(json, file));
   EXPECT_EQ(memory, expected);
-  EXPECT_EQ(parameters_json(memory), parse_json(kSource / "docs/examples/memory_system.json").at("parameters"));
+  EXPECT_EQ(parameters_json(memory), json);
+}
+
+TEST(MemorySystem, DifferencesHaveTheNameOfTheParameter) {
+  MemoryParameters one, other;
+  EXPECT_FALSE(find_difference(one, other));
+  other.l2.bytes = 65536, other.cores = 7;
+  EXPECT_EQ(find_difference(one, other)->name, "l2_bytes");
+  EXPECT_EQ(find_difference(one, other)->first, 4718592);
+  EXPECT_EQ(find_difference(one, other)->second, 65536);
+  EXPECT_EQ(find_difference(one, other, {"l2_bytes"})->name, "cores");
+  EXPECT_FALSE(find_difference(one, other, {"cores", "l2_bytes"}));
 }
 
 TEST(MemorySystem, ByTechniqueTakesBackAnotherPlace) {

@@ -73,7 +73,8 @@ TEST_F(HostileReport, NamesInMessagesAreOneLine) {
 TEST_F(HostileReport, ConditionsAreThoseThatMakeSense) {
   const auto conditions = [&](const std::string& members) {
     return report_conditions(
-        read(replaced(kReport, R"("clock_mhz")", R"("name": "GPU", "clock_mhz")").insert(1, members + ",")));
+        read(replaced(kReport, R"("clock_mhz")", R"("name": "GPU", "memory_system": {"parameters": {}}, "clock_mhz")")
+                 .insert(1, members + ",")));
   };
   EXPECT_GT(conditions(R"("frames": [], "trace_frames": 0)").size(), 0u);
   EXPECT_THROW(conditions(R"("frames": [{"index": 0}], "trace_frames": 1)"), JsonError);

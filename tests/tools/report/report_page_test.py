@@ -284,7 +284,7 @@ class ReportPage(PageTest):
             else:
                 self.assertEqual(float(row["dram_bytes"][0]), mean(result, lambda frame: frame["dram_bytes"]))
             for way in ["shaders", "fixed_function"]:
-                for kind in ["overlap", "sum"]:
+                for kind in ["overlap", "scheduled", "sum"]:
                     value, text = row[f"modelled_ms_{way}_{kind}"]
                     if result["technique"] == "reference":
                         self.assertEqual((value, text), ("", "–"), "it is not for hardware")
@@ -320,7 +320,7 @@ class ReportPage(PageTest):
             "wall_ms_max": of("wall_ms", "max"), "runs": of("wall_ms", "runs"), "rmse": of("error", "rmse"),
             "bias": of("error", "bias"),
             **{f"modelled_ms_{way}_{kind}": of("modelled_ms", way, kind)
-               for way in ["shaders", "fixed_function"] for kind in ["overlap", "sum"]}})
+               for way in ["shaders", "fixed_function"] for kind in ["overlap", "scheduled", "sum"]}})
 
     def test_memory_of_cards_and_frontier_has_the_a_buffer_in_it(self):
         for result in self.results.values():
@@ -368,7 +368,7 @@ class ReportPage(PageTest):
         [triangles] = {frame["triangles"] for frame in self.report["frames"]}
         self.assertEqual(found["scene"].replace("\u202f", ""), f"{triangles} triangles, 3 draws, 1 light")
         self.assertEqual(found["command"], f"beampipe compare {self.trace} -t {' '.join(TECHNIQUES)} --ladder 1,8 --causes")
-        self.assertEqual(found["hardware"], "Titan V class, 1455 MHz")
+        self.assertEqual(found["hardware"], "titan_v (Titan V class, 1455 MHz)")
         self.assertRegex(found["memory system"], r"^L2 4\.5 MiB, .*compression on")
 
     def test_stages_add_up_to_techniques_and_these_are_means_of_frames(self):

@@ -2,6 +2,7 @@
 
 #include "stages/cost/stage.h"
 #include "tests/tools/fixtures.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/files/image_io.h"
 #include "tools/report/cards.h"
 #include "tools/report/colors.h"
@@ -17,7 +18,7 @@ namespace beampipe::report_parts_test {
 // A report with two frames of one technique, which has one stage, and of the reference.
 constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", "threads": 1, "simd": "AVX2",
   "hardware": {"name": "Some GPU", "clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
-               "implementations": {"shaders": {}}},
+               "memory_system": {"parameters": {}}, "implementations": {"shaders": {}}},
   "claims": [{"name": "beam, \"RGB16F\"", "unit": "bytes", "published_low": 36, "published_high": 42, "ours": 42,
               "per_cent": 0, "holds": true, "source": "slide 30", "command": "beampipe report DIR"}],
   "msaa_ladder": [{"samples": 1, "rmse": 0.1}, {"samples": 8, "rmse": 0.03}],
@@ -248,7 +249,8 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   EXPECT_EQ(card.at("on_chip_bytes_per_pixel"), 2.5);
   EXPECT_EQ(card.at("on_chip_bytes"), 2560.0);
   EXPECT_EQ(card.at("bytes_per_pixel"), 49.0);
-  EXPECT_EQ(card.at("modelled_ms").at("shaders"), (Json{{"overlap", 3.0}, {"sum", 4.0}, {"busiest", "dram, shader"}}));
+  EXPECT_EQ(card.at("modelled_ms").at("shaders"),
+            (Json{{"overlap", 3.0}, {"scheduled", 0.0}, {"sum", 4.0}, {"busiest", "dram, shader"}}));
   EXPECT_EQ(card.at("rmse"), 0.02);
   EXPECT_EQ(card.at("emr"), 8.0);
   EXPECT_EQ(card.at("emr_bound"), "at least");
@@ -258,24 +260,28 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
 
 TEST_F(ReportParts, ConditionsTellHowTheNumbersWereFound) {
   std::string text = kReport;
-  text.insert(text.find("\"claims\""), R"("version": "1.2.3", "trace_frames": 9,
+  Json memory = parameters_json({});
+  memory["modelled"] = false, memory["compression"] = false, memory["framebuffer"] = "on-chip";
+  memory["on_chip_bytes"] = 65536;
+  text.insert(text.find("\"claims\""), "\"memory_system\": " + memory.dump() + ", ");
+  text.insert(text.find("\"claims\""), R"("version": "1.2.3", "hardware_named": "our gpus/some.json", "trace_frames": 9,
     "frames": [{"index": 3, "width": 320, "height": 180, "triangles": 1234567, "draws": 2, "lights": 1},
                {"index": 4, "width": 320, "height": 180, "triangles": 7, "draws": 3, "lights": 1}],
     "notes": [{"reason": "stencil test", "left_out": true, "draws": 1, "triangles": 34}],
     "made_by": {"command": "compare", "techniques": ["beam", "msaa:8"], "frames": "3-4", "repeat": 5, "memory_model": false,
-                "compression": true, "framebuffer": "on-chip", "memory_system": "of some file", "ladder": [1, 8],
+                "memory_system": "0", "ladder": [1, 8],
                 "causes": true, "orders": false}, )");
   text.replace(text.find("dots.json"), 9, "my dots.json");
   const ReportFile report = read(text);
   EXPECT_EQ(command_of(report),
-            "beampipe compare 'my dots.json' -t beam msaa:8 --frames 3-4 --repeat 5 --framebuffer on-chip "
-            "--no-memory-model --memory-system FILE --hardware FILE --ladder 1,8 --causes");
+            "beampipe compare 'my dots.json' -t beam msaa:8 --frames 3-4 --repeat 5 --hardware 'our gpus/some.json' "
+            "--no-memory-model --no-compression --framebuffer on-chip --on-chip-memory 65536 --ladder 1,8 --causes");
   std::map<std::string, std::string> found;
   const Json conditions = report_conditions(report);
   for (const Json& each : conditions.elements()) found[each.at(0).get<std::string>()] = each.at(1).get<std::string>();
   EXPECT_EQ(found["picture"], "320 × 180 pixels, 2 frames of 9");
   EXPECT_EQ(found["scene"], "7 to 1\u202f234\u202f567 triangles, 2 to 3 draws, 1 light");
-  EXPECT_EQ(found["hardware"], "Some GPU, 1000 MHz");
+  EXPECT_EQ(found["hardware"], "some (Some GPU, 1000 MHz)");
   EXPECT_EQ(found["program"], "beampipe 1.2.3, 1 thread, AVX2");
   EXPECT_EQ(found["left out"], "stencil test: 1 draw, 34 triangles");
   EXPECT_EQ(command_of(read()), "") << "an older report does not say what made it";

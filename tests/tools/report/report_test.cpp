@@ -103,7 +103,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(memory["modelled"], true);
   EXPECT_EQ(memory["compression"], true);
   EXPECT_EQ(memory["sector_bytes"], 32);
-  EXPECT_EQ(memory["rop_cache"], (Json{{"bytes", 24 * 16384}, {"ways", 4}, {"line_bytes", 256}}));
+  EXPECT_EQ(memory["rop_bytes"], 24 * 16384);
+  EXPECT_EQ(memory["on_chip_bytes"], 98304);
 }
 
 TEST(ReportJson, WithoutMemoryThereAreNoModelledTimes) {
@@ -224,8 +225,8 @@ TEST(SpecFolder, TurnsEverythingElseIntoUnderscores) {
 
 TEST(Table, HasOneRowPerTechnique) {
   EXPECT_EQ(table_text(sample_report(), "out"),
-            "technique  bytes/pixel  with A-buffer   ms  picture\n"
-            "msaa:8              80             92  9.0  out/msaa_8/frame_0004.png and 1 more\n");
+            "technique  B/px on chip  off chip  wall ms  picture\n"
+            "msaa:8                0        92      9.0  out/msaa_8/frame_0004.png and 1 more\n");
 }
 
 TEST(Table, HasErrorsAfterCompare) {
@@ -237,10 +238,10 @@ TEST(Table, HasErrorsAfterCompare) {
   report.results[1].technique = "beam";
   report.results[1].equivalent_msaa = EquivalentMsaa{256, true, false};
   EXPECT_EQ(table_text(report, "out"),
-            "technique  bytes/pixel  with A-buffer      RMSE       bias      p99      max    EMR   ms  picture\n"
-            "msaa:8              80             92  0.125000  -0.250000  0.50000  1.00000      8  8.0  "
+            "technique  B/px on chip  off chip      RMSE       bias      p99      max    EMR  wall ms  picture\n"
+            "msaa:8                0        92  0.125000  -0.250000  0.50000  1.00000      8      8.0  "
             "out/msaa_8/frame_0004.png\n"
-            "beam                80             92  0.125000  -0.250000  0.50000  1.00000  ≥ 256  8.0  "
+            "beam                  0        92  0.125000  -0.250000  0.50000  1.00000  ≥ 256      8.0  "
             "out/msaa_8/frame_0004.png\n");
 }
 

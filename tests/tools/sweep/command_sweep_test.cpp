@@ -68,20 +68,23 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
   for (auto row : rows) {
     const std::string l2 = row["memory_system.l2_bytes"], bin = row["memory_system.bin_pixels"];
     const bool compressed = row["memory_system.compression"] == "1";
-    const std::string key = row["technique"] + l2 + bin + row["memory_system.compression"];
+    const std::string key = row["hardware"] + row["technique"] + l2 + bin + row["memory_system.compression"];
     if (!runs.contains(key)) {
-      write_text(folder_ / "m.json", R"({"beampipe_memory_system": 1, "parameters": {"l2_bytes": )" + l2 +
-                                         R"(, "bin_pixels": )" + bin +
-                                         R"(}, "sources": {"l2_bytes": "choice", "bin_pixels": "choice"}})");
-      Names command = {"run", path("soup.json"), "-t", row["technique"], "--memory-system", path("m.json")};
-      command = joined(command, {"--hardware", "titan_v,mali_g710", "--force", "-o", path("single")});
+      Json hardware = read_hardware(row["hardware"]).json;
+      Json &parameters = hardware["memory_system"]["parameters"], &sources = hardware["memory_system"]["sources"];
+      for (const auto& [name, value] : {std::pair("l2_bytes", l2), std::pair("bin_pixels", bin)})
+        parameters[name] = std::stoi(value), sources[name] = "choice";
+      write_text(folder_ / "h.json", hardware.dump());
+      Names command = {"run", path("soup.json"), "-t", row["technique"], "--hardware", path("h.json")};
+      command = joined(command, {"--force", "-o", path("single")});
       if (!compressed) command.push_back("--no-compression");
       succeed(command);
       runs[key] = Parsed::parse(read_text(folder_ / "single/report.json"));
-      if (!comparisons.contains(row["technique"] + bin)) {
+      if (!comparisons.contains(row["hardware"] + row["technique"] + bin)) {
         command[0] = "compare";
         succeed(command);
-        comparisons[row["technique"] + bin] = Parsed::parse(read_text(folder_ / "single/report.json"));
+        comparisons[row["hardware"] + row["technique"] + bin] =
+            Parsed::parse(read_text(folder_ / "single/report.json"));
       }
     }
     const Parsed& result = runs[key]["results"][0];
@@ -103,13 +106,13 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
       EXPECT_EQ(row["dram_bytes.geometry"], geometry["dram_bytes"].dump());
     }
 
-    const std::string prefix = row["hardware"] == "titan_v" ? "" : "mali_g710.";
-    const Parsed& time = frame["modelled_ms"][prefix + row["implementation"]];
+    const Parsed& time = frame["modelled_ms"][row["implementation"]];
     EXPECT_EQ(row["modelled_ms"], time["overlap"].dump()) << key;
+    EXPECT_EQ(row["modelled_scheduled_ms"], time["scheduled"].dump()) << key;
     EXPECT_EQ(row["modelled_sum_ms"], time["sum"].dump()) << key;
     EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>()) << key;
 
-    const Parsed& compared = comparisons[row["technique"] + bin]["results"][0];
+    const Parsed& compared = comparisons[row["hardware"] + row["technique"] + bin]["results"][0];
     for (const char* column : {"rmse", "bias"})
       EXPECT_EQ(row[column], compared["error"][column].dump()) << key << column;
     EXPECT_EQ(row["emr"], compared["equivalent_msaa"].dump()) << key;
@@ -208,7 +211,7 @@ TEST_F(SweepTest, OnlyWhatChangesIsRenderedAgain) {
   const std::string plan = R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:8"])";
   write_text(folder_ / "plan.json", plan + "}");
   EXPECT_EQ(succeed(sweep()).find("results: 2 rendered, 0 the same as one of these, 0 kept from earlier"), 0u);
-  write_text(folder_ / "plan.json", plan + R"(, "hardware": ["mali_g710"], "hardware.l2_bytes_per_clk": [5]})");
+  write_text(folder_ / "plan.json", plan + R"(, "hardware.clock_mhz": [850], "hardware.l2_bytes_per_clk": [5]})");
   EXPECT_EQ(succeed(sweep()).find("results: 0 rendered, 0 the same as one of these, 2 kept from earlier"), 0u);
   write_text(folder_ / "plan.json",
              R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:4"]})");
@@ -285,6 +288,12 @@ TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
     return succeed(sweep({"--slurm", "--sbatch", "time=0:10:00", "exclusive", "--plot", plot}));
   };
 
+  const std::string dry = succeed(sweep({"--slurm", "--dry-run"}));
+  EXPECT_NE(dry.find("\nsbatch --array=0-2 " + path("out/slurm/array.sh") + "\nsbatch --dependency=afterany:JOB " +
+                     path("out/slurm/merge.sh") + "\n"),
+            std::string::npos)
+      << dry;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bin/submitted"));
   EXPECT_EQ(submit().find("submitted: job 1, 3 of 3 tasks, and job 2, which then makes the table\n"), 0u);
   EXPECT_EQ(read_text(folder_ / "bin/submitted"), "--parsable --array=0-2 " + path("out/slurm/array.sh") +
                                                       "\n--parsable --dependency=afterany:1 " +

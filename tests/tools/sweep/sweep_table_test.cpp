@@ -49,7 +49,11 @@ TEST(SweepTable, SqliteHasRowsAndTheMeaningOfColumns) {
 }
 
 TEST(SweepPlot, LinesGoThroughGeometricMeans) {
-  const ScatterPlot plot = sweep_plot(sample_table(), {"x", "y", "name"});
+  const std::vector<ScatterPlot> plots = sweep_plots(sample_table(), {"x", "y", "name"});
+  ASSERT_EQ(plots.size(), 1u);
+  const ScatterPlot& plot = plots[0];
+  EXPECT_EQ(plot.title, "y against x, by name (geometric means of 2)");
+  EXPECT_EQ(plot.x_ticks, (std::vector<double>{1, 10}));
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].name, "plain");
   ASSERT_EQ(plot.series[0].points.size(), 2u);
@@ -65,11 +69,41 @@ TEST(SweepPlot, LargeNumbersAreInLargerUnits) {
   const SweepTable table{{{"memory_system.l2_bytes", "bytes", ""}, {"dram_bytes", "bytes", ""}, {"by", "", "", true}},
                          {{4096, 2500000, "a"}},
                          0};
-  const ScatterPlot plot = sweep_plot(table, {"memory_system.l2_bytes", "dram_bytes", "by"});
+  const ScatterPlot plot = sweep_plots(table, {"memory_system.l2_bytes", "dram_bytes", "by"}).at(0);
   EXPECT_EQ(plot.x_label, "memory_system.l2_bytes (KiB)");
   EXPECT_EQ(plot.y_label, "dram_bytes (MB)");
   EXPECT_EQ(plot.series.at(0).points.at(0).x, 4);
   EXPECT_NEAR(plot.series.at(0).points.at(0).y, 2.5, 1e-12);
+}
+
+// Two traces are alike; implementations are not, and L1 differs only as the hardware does.
+TEST(SweepPlot, UnlikeThingsAreNotAveraged) {
+  SweepTable table{{{"trace", "", "", true},
+                    {"technique", "", "", true},
+                    {"memory_system.l1_bytes", "bytes", ""},
+                    {"hardware", "", "", true},
+                    {"implementation", "", "", true},
+                    {"x", "", ""},
+                    {"y", "", ""}},
+                   {},
+                   0};
+  for (const char* hardware : {"small", "large"})
+    for (const char* implementation : {"shaders", "fixed"})
+      for (const char* trace : {"a", "b"})
+        for (const int x : {1, 2})
+          table.rows.push_back({trace, "beam", hardware == std::string("small") ? 10 : 20, hardware, implementation, x,
+                                implementation == std::string("fixed") ? 2 : (trace == std::string("a") ? 10 : 40)});
+  const std::vector<ScatterPlot> by_technique = sweep_plots(table, {"x", "y", "technique"});
+  ASSERT_EQ(by_technique.size(), 4u);
+  EXPECT_EQ(by_technique[0].title,
+            "y against x, by technique; hardware small, implementation shaders (geometric means of 2)");
+  EXPECT_EQ(by_technique[3].name, "y_against_x_by_technique_hardware_large__implementation_fixed");
+  EXPECT_NEAR(by_technique[0].series.at(0).points.at(0).y, 20, 1e-9);
+  EXPECT_NEAR(by_technique[1].series.at(0).points.at(1).y, 2, 1e-9);
+  const std::vector<ScatterPlot> by_hardware = sweep_plots(table, {"x", "y", "hardware"});
+  ASSERT_EQ(by_hardware.size(), 2u) << "L1 goes with the hardware";
+  EXPECT_EQ(by_hardware[1].title, "y against x, by hardware; implementation fixed (geometric means of 2)");
+  EXPECT_EQ(by_hardware[1].series.size(), 2u);
 }
 
 TEST(SweepPlot, ColumnsMustExistAndHoldNumbers) {

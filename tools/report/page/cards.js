@@ -11,7 +11,7 @@ function cardRows(card, implementation) {
     ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin`]],
     ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, ["framebuffer, A-buffer"]],
     ["time", time?.overlap, (value) => `${shortText(value)} ms`,
-      [`bottleneck: ${time?.busiest}`, `in turn: ${shortText(time?.sum ?? 0)} ms`]],
+      [`bottleneck: ${time?.busiest}`, `on cores: ${shortText(time?.scheduled ?? 0)} ms`, `in turn: ${shortText(time?.sum ?? 0)} ms`]],
     ["RMSE", card.rmse, shortText, []],
     ["EMR", card.emr, (value) => bound[card.emr_bound] + shortText(value), []],
   ];
@@ -40,8 +40,8 @@ function startCards(summary) {
   const select = byId("implementation"), [baseline] = summary.cards;
   fillSelect(select, summary.implementations);
   byId("implementations").hidden = summary.implementations.length === 0;
-  byId("cost-note").textContent = summary.cards.length === 1 ? "Costs are per frame. Times: all stages at once, and in turn, one stage after the other."
-    : `Costs are per frame; multiples are of ${summary.baseline}. Times: all stages at once, and in turn, one stage after the other.`;
+  byId("cost-note").textContent = summary.cards.length === 1 ? "Costs are per frame. Times: all units at once and evenly; bins one by one on cores; and one stage after the other."
+    : `Costs are per frame; multiples are of ${summary.baseline}. Times: all units at once and evenly; bins one by one on cores; and one stage after the other.`;
   const show = () => byId("cards").replaceChildren(...summary.cards.map((card) => makeCard(card, baseline, select.value)));
   select.addEventListener("change", show);
   show();

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Computes all modelled times of a report again from its counters and its hardware, as docs/costs.md describes them.
+
+usage: modelled_times_test.py BEAMPIPE
+"""
+import heapq
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SPECS = ["beam", "beam:order=sorted", "casav", "msaa:8", "msaa:8,prepass", "acaa:8", "deferred", "taa:4", "dvm"]
+
+
+def unit_clocks(unit, stage, rates, on_chip):
+    """The clocks that a unit needs for the work of a stage."""
+    ops, logical = stage["ops"], stage["bytes_read"] + stage["bytes_written"]
+    pixels = logical / rates["on_chip_bytes_per_clk" if on_chip else "rop_bytes_per_clk"]
+    if unit in ("shader", "shading"):
+        floats = ops["mul_add"] + ops["add"]
+        narrow = max(1 - ops["wide"] / floats, 0) if floats else 0
+        return max((ops["total"] + ops["wide"]) / rates["issue_per_clk"],
+                   narrow * (ops["mul_add"] / rates["mul_add_per_clk"] + ops["add"] / rates["add_per_clk"]),
+                   ops["bit"] / rates["bit_per_clk"] + ops["wide"] / rates["wide_per_clk"],
+                   *(ops[kind] / rates[f"{kind}_per_clk"] for kind in ("fetch", "special", "convert")),
+                   (logical - stage["texture_bytes"]) / rates["on_chip_bytes_per_clk"])
+    works = {
+        "triangles": [("items_in", "triangles_per_clk")],
+        "raster": [("items_out", "raster_pixels_per_clk")],
+        "conservative_raster": [("lanes_used", "conservative_pixels_per_clk")],
+        "texture": [("texture_bytes", "texture_bytes_per_clk")],
+        "mask_generator": [("items_in", "conservative_pixels_per_clk"), ("position_tests", "mask_positions_per_clk")],
+        "composer": [("items_in", "rop_fragments_per_clk"), ("position_tests", "compose_positions_per_clk")],
+        "rop_samples": [("items_in", "rop_samples_per_clk")],
+        "rop_fragments": [("items_in", "rop_fragments_per_clk")],
+        "sorter": [("items_in", "rop_fragments_per_clk")],
+        "l2": [("l2_bytes", "l2_bytes_per_clk")],
+    }
+    if unit == "quads":
+        return stage["lanes_issued"] / 4 / rates["quads_per_clk"]
+    if unit == "dram":
+        return stage["dram_bytes"] / (rates["dram_bytes_per_clk"] * rates["dram_efficiency"])
+    clocks = [stage[counter] / rates[rate] for counter, rate in works[unit]]
+    if unit == "sorter":
+        clocks.append(ops["total"] / rates["sort_operations_per_clk"])
+    if unit in ("composer", "rop_samples", "rop_fragments"):
+        clocks.append(pixels)
+    return max(clocks)
+
+
+def on_busiest_core(operations, cores):
+    """The work of the busiest core over the mean: each bin starts on the core that is free first."""
+    free_at = [0] * cores
+    for work in operations:
+        heapq.heapreplace(free_at, free_at[0] + work)
+    return max(free_at) * cores / sum(operations) if sum(operations) else 1
+
+
+class ModelledTimesTest(unittest.TestCase):
+    def test_every_time_follows_from_counters_and_rates(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            trace, out = f"{scratch}/trace.json", pathlib.Path(scratch) / "out"
+            subprocess.run([BEAMPIPE, "make", "room", "--width", "160", "--height", "90", "-o", trace], check=True,
+                           stdout=subprocess.DEVNULL)
+            for part in ("titan_v", "rtx_4090", "mali_g710"):
+                subprocess.run([BEAMPIPE, "run", trace, "-t", *SPECS, "--hardware", part, "-o", out, "--force"], check=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                self.check(json.loads((out / "report.json").read_text()), part)
+
+    def check(self, report, part):
+        hardware, memory = report["hardware"], report["memory_system"]
+        rates, clocks_per_ms = hardware["rates"], hardware["clock_mhz"] * 1e3
+        compared = []
+        for result in report["results"]:
+            frame = result["frames"][0]
+            bin_bytes = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels")
+            held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), memory["bins_per_core"]), 1)
+            for way, implementation in hardware["implementations"].items():
+                before, of_bins, in_turn = {}, {}, 0
+                for stage in frame["stages"]:
+                    units = implementation["units"][stage["stage"].removeprefix("prepass_")]
+                    stall = memory["bins_per_core"] / held if "on_chip" in units and bin_bytes else 1
+                    times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0) / clocks_per_ms * stall
+                             for unit in units if unit != "on_chip"}
+                    times |= {unit: unit_clocks(unit, stage, rates, False) / clocks_per_ms for unit in ("l2", "dram")}
+                    if "shading" in times:
+                        times["shader"] = max(times.pop("shading"), times.get("shader", 0))
+                    compared.append((f"{part} {result['technique']} {way} {stage['stage']}", stage["modelled_ms"][way],
+                                     max(times.values())))
+                    in_turn += max(times.values())
+                    busy = before if stage["stage"].endswith("vertex_setup") else of_bins
+                    for unit, ms in times.items():
+                        busy[unit] = busy.get(unit, 0) + ms
+                longer = on_busiest_core(frame["bin_operations"], memory["cores"])
+                on_cores = max(before.values()) + max(ms if unit in ("l2", "dram") else ms * longer
+                                                      for unit, ms in of_bins.items())
+                at_once = max(before.get(unit, 0) + of_bins.get(unit, 0) for unit in before | of_bins)
+                for key, expected in (("sum", in_turn), ("scheduled", on_cores), ("overlap", at_once)):
+                    compared.append((f"{part} {result['technique']} {way} {key}", frame["modelled_ms"][way][key], expected))
+        for name, found, expected in compared:
+            self.assertAlmostEqual(found, expected, delta=1e-9 * expected, msg=name)
+        for name, found, _ in random.Random(1).sample(compared, 10):
+            print(f"{name}: {found:.6g} ms, computed again")
+
+
+if __name__ == "__main__":
+    BEAMPIPE = sys.argv.pop(1)
+    unittest.main()
