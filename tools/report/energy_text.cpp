@@ -19,7 +19,9 @@ constexpr std::pair<const char*, const char*> kComparing[] = {{"mask_generator",
                                                               {"composer", "compose_positions_per_clk"},
                                                               {"rop_samples", "rop_samples_per_clk"}};
 
-struct Row {
+Interval part_of(const Interval& sum, double parts) { return {sum.low / parts, sum.high / parts}; }
+
+struct EnergyRow {
   const TechniqueReport& result;
   const Implementation& implementation;
   Energy mean = {};                          // of the frames
@@ -28,10 +30,8 @@ struct Row {
   double on_chip_bytes = 0;                  // in all cores
   std::map<std::string, double> rates = {};  // of comparisons, by unit
 
-  Interval watts() const { return {mean.total().low / scheduled_ms, mean.total().high / scheduled_ms}; }
+  Interval watts() const { return scheduled_ms > 0 ? part_of(mean.total(), scheduled_ms) : Interval{}; }
 };
-
-Interval part_of(const Interval& sum, double parts) { return {sum.low / parts, sum.high / parts}; }
 
 Energy part_of(const Energy& sum, double parts) {
   Energy part;
@@ -39,9 +39,9 @@ Energy part_of(const Energy& sum, double parts) {
   return part;
 }
 
-Row row_of(const Report& report, const TechniqueReport& result, const Implementation& implementation) {
+EnergyRow energy_row(const Report& report, const TechniqueReport& result, const Implementation& implementation) {
   const Hardware& hardware = report.hardware;
-  Row row{result, implementation};
+  EnergyRow row{result, implementation};
   const auto frames = static_cast<double>(result.frames.size());
   for (const FrameReport& frame : result.frames) {
     const std::vector<StageEnergy> stages = modelled_energy(hardware, implementation, frame.stages);
@@ -60,27 +60,27 @@ Row row_of(const Report& report, const TechniqueReport& result, const Implementa
   return row;
 }
 
-std::vector<Row> rows_of(const Report& report) {
-  std::vector<Row> rows;
+std::vector<EnergyRow> energy_rows(const Report& report) {
+  std::vector<EnergyRow> rows;
   for (const TechniqueReport& result : report.results)
     for (const Implementation& implementation : report.hardware.implementations)
       if (result.technique != kReferenceSpec && !result.frames.empty())
-        rows.push_back(row_of(report, result, implementation));
+        rows.push_back(energy_row(report, result, implementation));
   return rows;
 }
 
 // Two significant digits, as energies have at most.
-std::string number_text(double number) { return format(number < 10 ? "%.2g" : "%.0f", number); }
+std::string two_digits(double number) { return format(number < 10 ? "%.2g" : "%.0f", number); }
 
-std::string interval_text(const Interval& interval) {
-  return number_text(interval.low) + " to " + number_text(interval.high);
+std::string ends_text(const Interval& interval) {
+  return two_digits(interval.low) + " to " + two_digits(interval.high);
 }
 
-Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
+Json ends_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
 
 Json energy_json(const Energy& energy) {
-  Json json = {{"total", interval_json(energy.total())}};
-  for (const EnergyTerm& term : energy_terms()) json[term.name] = interval_json(energy.*term.part);
+  Json json = {{"total", ends_json(energy.total())}};
+  for (const EnergyTerm& term : energy_terms()) json[term.name] = ends_json(energy.*term.part);
   return json;
 }
 
@@ -90,14 +90,14 @@ std::string energy_text(const Report& report) {
   std::vector<std::vector<std::string>> rows = {{"technique", "implementation", "mJ"}};
   for (const EnergyTerm& term : energy_terms()) rows[0].emplace_back(term.name);
   rows[0].insert(rows[0].end(), {"W", "KiB for bins", "compared per clock"});
-  for (const Row& row : rows_of(report)) {
+  for (const EnergyRow& row : energy_rows(report)) {
     std::vector<std::string>& cells = rows.emplace_back();
-    cells = {row.result.technique, row.implementation.name, interval_text(row.mean.total())};
-    for (const EnergyTerm& term : energy_terms()) cells.push_back(interval_text(row.mean.*term.part));
+    cells = {row.result.technique, row.implementation.name, ends_text(row.mean.total())};
+    for (const EnergyTerm& term : energy_terms()) cells.push_back(ends_text(row.mean.*term.part));
     std::string compared;
     for (const auto& [unit, rate] : row.rates)
       compared += (compared.empty() ? "" : ", ") + unit + format(" %.0f", rate);
-    cells.insert(cells.end(), {interval_text(row.watts()), format("%.0f", row.on_chip_bytes / 1024), compared});
+    cells.insert(cells.end(), {ends_text(row.watts()), format("%.0f", row.on_chip_bytes / 1024), compared});
   }
   return "\nmodelled mJ on " + report.hardware.label + " (" + report.hardware.name + ")\n" +
          align_columns(rows, {0, 1, rows[0].size() - 1});
@@ -105,7 +105,7 @@ std::string energy_text(const Report& report) {
 
 Json energy_json(const Report& report) {
   Json json = Json::array();
-  for (const Row& row : rows_of(report)) {
+  for (const EnergyRow& row : energy_rows(report)) {
     Json stages = Json::object(), rates = Json::object();
     for (const auto& [stage, energy] : row.stages) stages[name_of(stage)] = energy_json(energy);
     for (const auto& [unit, rate] : row.rates) rates[unit] = rate;
@@ -114,7 +114,7 @@ Json energy_json(const Report& report) {
                     {"implementation", row.implementation.name},
                     {"energy_mj", energy_json(row.mean)},
                     {"stages", stages},
-                    {"watts", interval_json(row.watts())},
+                    {"watts", ends_json(row.watts())},
                     {"on_chip_bytes", row.on_chip_bytes},
                     {"compared_per_clk", rates}});
   }
