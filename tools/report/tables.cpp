@@ -18,7 +18,8 @@ struct Source {
 };
 
 // Views of the tables of techniques and frames, stages, and claims.
-constexpr const char *kAccuracy = "accuracy", *kMemory = "memory", *kTime = "time", *kEnergy = "energy";
+constexpr const char *kAccuracy = "accuracy", *kMemory = "memory", *kTime = "time";
+constexpr const char *kLeast = "least energy", *kMost = "most energy";
 constexpr const char *kItems = "items", *kOperations = "operations", *kBytes = "bytes", *kTexels = "texels";
 constexpr const char *kNumbers = "numbers", *kSources = "sources";
 
@@ -107,16 +108,17 @@ const char* view_of(const CounterInfo& counter) {
   return std::string_view(counter.unit) == "bytes" ? kBytes : kItems;
 }
 
-// Two columns for each part of the modelled energy, the least and the most of it.
+// Two columns for each part of the modelled energy: the least and the most of it, each with a view of its own.
 void add_energy(std::vector<Source>& columns, const ReportFile& report, const std::string& unit) {
   const auto add = [&](const std::string& name, const std::string& meaning, const std::string& implementation) {
-    const bool is_one_of = !implementation.empty();
-    const std::string key = "energy_mj_" + (is_one_of ? implementation + "_" : "") + name;
-    const std::string title = (is_one_of ? implementation + ", " : "") + name, pointer = "/energy_mj/" + name;
-    for (const char* const end : {"low", "high"})
-      columns.push_back({{key + "_" + end, title + ", " + end, unit,
-                          "Modelled energy of " + meaning + ": the " + (*end == 'l' ? "least." : "most."), kEnergy},
-                         pointer + (is_one_of ? "/" + implementation : "") + "/" + end});
+    const bool is_of_one = !implementation.empty();
+    const std::string key = "energy_mj_" + name + (is_of_one ? "_" + implementation : "");
+    const std::string pointer = "/energy_mj/" + name + (is_of_one ? "/" + implementation : "");
+    const std::string title = name + (is_of_one ? ", " + implementation : "");
+    columns.push_back({{key + "_low", title + ", least", unit, "The least modelled energy of " + meaning + ".", kLeast},
+                       pointer + "/low"});
+    columns.push_back({{key + "_high", title + ", most", unit, "The most modelled energy of " + meaning + ".", kMost},
+                       pointer + "/high"});
   };
   for (const EnergyTerm& term : energy_terms())
     if (!term.by_implementation) add(term.name, term.meaning, "");
