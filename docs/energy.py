@@ -3,8 +3,8 @@
 
 usage: docs/energy.py PROGRAM DIR...
 
-`beampipe run TRACE -t SPEC... --hardware PART -o DIR` wrote each folder, with the same techniques. Prints millijoules per
-frame, the least and the most, by technique, part and implementation.
+`beampipe run TRACE -t SPEC... --hardware PART -o DIR` wrote each folder, with the same techniques, of which the first two
+are compared. Prints millijoules per frame, the least and the most, by part and implementation.
 """
 import json
 import subprocess
@@ -13,17 +13,23 @@ import sys
 from measure import print_head, print_row
 
 
+def text_of(interval):
+    return f"{interval[0]:.2g} to {interval[1]:.2g}"
+
+
 def main(program, *folders):
-    text = subprocess.run([program, "model", *folders, "--energy", "--json"], check=True, capture_output=True,
-                          text=True).stdout
-    rows = {}
+    with open(f"{folders[0]}/report.json", encoding="utf-8") as file:
+        first, second = (result["technique"] for result in json.load(file)["results"][:2])
+    text = subprocess.run([program, "model", *folders, "--energy", "--over", second, "--json"], check=True,
+                          capture_output=True, text=True).stdout
+    parts = {}
     for report in json.loads(text):
         for row in report["energy"]:
-            low, high = row["energy_mj"]["total"]
-            rows.setdefault(row["technique"], {})[f"`{row['hardware']}.{row['implementation']}`"] = f"{low:.2g} to {high:.2g}"
-    print_head("technique", *next(iter(rows.values())))
-    for technique, cells in rows.items():
-        print_row(f"`{technique}`", *cells.values())
+            parts.setdefault(f"`{row['hardware']}.{row['implementation']}`", []).append(row)
+    rows = next(iter(parts.values()))
+    print_head("part", *(f"`{row['technique']}`" for row in rows), f"`{first}` / `{second}`")
+    for part, rows in parts.items():
+        print_row(part, *(text_of(row["energy_mj"]["total"]) for row in rows), text_of(rows[0]["ratio_interval"]))
 
 
 if __name__ == "__main__":

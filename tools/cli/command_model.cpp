@@ -50,10 +50,10 @@ void model(const ModelArguments& arguments) {
     const Report report = model(folder, other ? &*other : nullptr, arguments);
     if (arguments.json) {
       json.push_back({{"folder", folder}, {"times", times_json(report, arguments.times)}});
-      if (arguments.energy) json.elements().back()["energy"] = energy_json(report);
+      if (arguments.energy) json.elements().back()["energy"] = energy_json(report, arguments.times.over);
     } else {
       std::cout << folder << ":" << times_text(report, arguments.times)
-                << (arguments.energy ? energy_text(report) : std::string());
+                << (arguments.energy ? energy_text(report, arguments.times.over) : std::string());
     }
   }
   if (arguments.json) std::cout << json_text(json);
@@ -67,7 +67,7 @@ void add_model_command(CommandLine& line) {
   command.add("DIR", arguments->folders, "folders that run or compare wrote").required();
   add_hardware_options(command, arguments->hardware, "that of the run");
   command.add("--over", arguments->times.over,
-              "a technique of the run: also print the times of the others over its time, with intervals");
+              "a technique of the run: also print times and energies of the others over its own, with intervals");
   command.add_flag("--sensitivity", arguments->times.sensitivity,
                    "with --over: also print what each rate makes of the quotients at the ends of its range");
   command.add_flag("--energy", arguments->energy, "also print modelled energy, and what stands for area");

@@ -32,25 +32,44 @@ bool runs_on_shaders(const Implementation& implementation, StageId stage) {
                      [](const std::string& unit) { return unit == "shader" || unit == "shading"; });
 }
 
-Energy energy_of(const Hardware& hardware, const StageCounters& stage, bool on_shaders) {
+using Count = std::uint64_t;
+
+// What each energy of a description is the price of, and the part of Energy that it belongs to. Instructions are
+// counted as in modelled times: those on 64-bit integers are issued twice.
+struct Price {
+  const char* name;
+  Interval Energy::*part;
+  Count (*count)(const StageCounters& stage);
+};
+constexpr Price kPrices[] = {
+    {"mul_add", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.mul_add; }},
+    {"add", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.add; }},
+    {"bit", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.bit; }},
+    {"fetch", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.fetch; }},
+    {"special", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.special; }},
+    {"convert", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.convert; }},
+    {"wide", &Energy::operations, [](const StageCounters& s) -> Count { return s.ops.wide; }},
+    {"instruction", &Energy::instructions, [](const StageCounters& s) -> Count { return s.ops.total() + s.ops.wide; }},
+    {"on_chip_byte", &Energy::on_chip,
+     [](const StageCounters& s) -> Count { return s.logical_bytes() - std::min(s.texture_bytes, s.logical_bytes()); }},
+    {"texture_byte", &Energy::on_chip, [](const StageCounters& s) -> Count { return s.texture_bytes; }},
+    {"l2_byte", &Energy::l2, [](const StageCounters& s) -> Count { return s.l2_bytes; }},
+    {"dram_byte", &Energy::dram, [](const StageCounters& s) -> Count { return s.dram_bytes; }},
+};
+
+// Fixed functions have no instructions.
+double count_of(const Price& price, const Implementation& implementation, const StageCounters& stage) {
+  const bool is_paid = price.part != &Energy::instructions || runs_on_shaders(implementation, stage.stage.id);
+  return is_paid ? static_cast<double>(price.count(stage)) : 0;
+}
+
+Energy energy_of(const Hardware& hardware, const Implementation& implementation, const StageCounters& stage) {
   Energy energy;
-  const auto add = [&](Interval& part, std::uint64_t count, const char* name) {
-    const RateRange& each = hardware.picojoules.at(name);
-    part +=
-        {static_cast<double>(count) * each.low * kMillijoules, static_cast<double>(count) * each.high * kMillijoules};
-  };
-  add(energy.operations, stage.ops.mul_add, "mul_add");
-  add(energy.operations, stage.ops.add, "add");
-  add(energy.operations, stage.ops.bit, "bit");
-  add(energy.operations, stage.ops.fetch, "fetch");
-  add(energy.operations, stage.ops.special, "special");
-  add(energy.operations, stage.ops.convert, "convert");
-  add(energy.operations, stage.ops.wide, "wide");
-  if (on_shaders) add(energy.instructions, stage.ops.total() + stage.ops.wide, "instruction");  // as in modelled times
-  add(energy.on_chip, stage.logical_bytes() - std::min(stage.texture_bytes, stage.logical_bytes()), "on_chip_byte");
-  add(energy.on_chip, stage.texture_bytes, "texture_byte");
-  add(energy.l2, stage.l2_bytes, "l2_byte");
-  add(energy.dram, stage.dram_bytes, "dram_byte");
+  for (const Price& price : kPrices) {
+    const double count = count_of(price, implementation, stage) * kMillijoules;
+    const RateRange& each = hardware.picojoules.at(price.name);
+    energy.*price.part += {count * each.low, count * each.high};
+  }
   return energy;
 }
 
@@ -73,8 +92,42 @@ std::vector<StageEnergy> modelled_energy(const Hardware& hardware, const Impleme
                                          const std::vector<StageCounters>& stages) {
   std::vector<StageEnergy> all;
   for (const StageCounters& stage : with_shading(hardware, stages))
-    all.push_back({stage.stage, energy_of(hardware, stage, runs_on_shaders(implementation, stage.stage.id))});
+    all.push_back({stage.stage, energy_of(hardware, implementation, stage)});
   return all;
+}
+
+PricedWork priced_work(const Hardware& hardware, const Implementation& implementation,
+                       const std::vector<StageCounters>& stages) {
+  PricedWork work;
+  for (const StageCounters& stage : with_shading(hardware, stages))
+    for (const Price& price : kPrices) work[price.name] += count_of(price, implementation, stage);
+  return work;
+}
+
+// A quotient of sums is greatest if all energies of which `work` has more than its share are at their highest, and the
+// others at their lowest. How much is more depends on the quotient, so each place to part them is tried.
+Interval quotient_of(const Hardware& hardware, const PricedWork& work, const PricedWork& over) {
+  std::vector<std::string> names;
+  for (const auto& [name, count] : work) names.push_back(name);
+  std::sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return work.at(a) * over.at(b) < work.at(b) * over.at(a);
+  });
+  const auto quotient = [&](std::size_t parted_at, bool first_are_high) {
+    double sum = 0, of_over = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const RateRange& each = hardware.picojoules.at(names[i]);
+      const double picojoules = (i < parted_at) == first_are_high ? each.high : each.low;
+      sum += work.at(names[i]) * picojoules;
+      of_over += over.at(names[i]) * picojoules;
+    }
+    return sum / of_over;
+  };
+  Interval interval = {quotient(0, true), quotient(0, true)};
+  for (std::size_t i = 0; i <= names.size(); ++i) {
+    interval.low = std::min(interval.low, quotient(i, true));
+    interval.high = std::max(interval.high, quotient(i, false));
+  }
+  return interval;
 }
 
 Energy sum_of(const std::vector<StageEnergy>& stages) {

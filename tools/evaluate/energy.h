@@ -5,7 +5,9 @@
 // screen are left out, so a GPU takes more.
 #pragma once
 
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -47,5 +49,14 @@ std::vector<StageEnergy> modelled_energy(const Hardware& hardware, const Impleme
 
 // Of all of them together.
 Energy sum_of(const std::vector<StageEnergy>& stages);
+
+// How many operations, instructions and bytes there are of each energy, by its name.
+using PricedWork = std::map<std::string, double>;
+PricedWork priced_work(const Hardware& hardware, const Implementation& implementation,
+                       const std::vector<StageCounters>& stages);
+
+// The least and the most that the energy of `work` can be, divided by that of `over`, if each energy lies anywhere in
+// its range and is the same for both. `over` takes energy.
+Interval quotient_of(const Hardware& hardware, const PricedWork& work, const PricedWork& over);
 
 }  // namespace beampipe

@@ -14,7 +14,7 @@ namespace {
 
 using UnitsOfStages = decltype(Implementation::units);
 
-constexpr double kLeastRate = 1e-6, kMostRate = 1e12;  // so that no time becomes infinite
+constexpr double kLeastRate = 1e-6, kMostRate = 1e12;  // so that no time or quotient becomes infinite
 constexpr const char* kSource = "where the number is from, or that it is a choice";
 
 Form<ShadingCost> cost_form() {
@@ -72,11 +72,11 @@ Form<RateRange> range_form(const Form<double>& number) {
 }
 
 Form<std::map<std::string, RateRange>> energy_form() {
-  constexpr double kMost = 1e6;
+  constexpr double kMostEnergy = 1e6;
   using Energies = std::map<std::string, RateRange>;
   return ObjectForm<Energies>()
       .required("picojoules", std::identity(),
-                form::record(hardware_energies(), true, range_form(form::number(0, kMost))),
+                form::record(hardware_energies(), true, range_form(form::number(kLeastRate, kMostEnergy))),
                 "[lowest, highest] of each operation and byte.")
       .add(form::unused<Energies>("sources", true, form::record(hardware_energies(), true, form::text(kSource)),
                                   "Where each of these is from, or that it is a choice, by its name."))

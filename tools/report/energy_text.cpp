@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "tools/evaluate/energy.h"
@@ -29,6 +30,7 @@ struct EnergyRow {
   double scheduled_ms = 0;                   // the same
   double on_chip_bytes = 0;                  // in all cores
   std::map<std::string, double> rates = {};  // of comparisons, by unit
+  std::optional<Interval> quotient = {};
 
   Interval watts() const { return scheduled_ms > 0 ? part_of(mean.total(), scheduled_ms) : Interval{}; }
 };
@@ -39,7 +41,15 @@ Energy part_of(const Energy& sum, double parts) {
   return part;
 }
 
-EnergyRow energy_row(const Report& report, const TechniqueReport& result, const Implementation& implementation) {
+PricedWork work_of(const Hardware& hardware, const Implementation& implementation, const TechniqueReport& result) {
+  PricedWork sum;
+  for (const FrameReport& frame : result.frames)
+    for (const auto& [name, count] : priced_work(hardware, implementation, frame.stages)) sum[name] += count;
+  return sum;
+}
+
+EnergyRow energy_row(const Report& report, const TechniqueReport& result, const Implementation& implementation,
+                     const TechniqueReport* over) {
   const Hardware& hardware = report.hardware;
   EnergyRow row{result, implementation};
   const auto frames = static_cast<double>(result.frames.size());
@@ -49,6 +59,9 @@ EnergyRow energy_row(const Report& report, const TechniqueReport& result, const 
     for (const StageEnergy& each : stages) row.stages[each.stage] += part_of(each.energy, frames);
     row.scheduled_ms += modelled_time(hardware, implementation, frame.work()).scheduled_ms / frames;
   }
+  if (over && over != &result)
+    row.quotient =
+        quotient_of(hardware, work_of(hardware, implementation, result), work_of(hardware, implementation, *over));
   const FrameReport first = result.frames.front();
   if (const double bytes = first.open_pixel_bytes())
     row.on_chip_bytes = bytes * bins_held(report.memory, bytes) * report.memory.cores;
@@ -60,12 +73,15 @@ EnergyRow energy_row(const Report& report, const TechniqueReport& result, const 
   return row;
 }
 
-std::vector<EnergyRow> energy_rows(const Report& report) {
+std::vector<EnergyRow> energy_rows(const Report& report, const std::string& over) {
+  const TechniqueReport* of_over = nullptr;
+  for (const TechniqueReport& result : report.results)
+    if (result.technique == over) of_over = &result;
   std::vector<EnergyRow> rows;
   for (const TechniqueReport& result : report.results)
     for (const Implementation& implementation : report.hardware.implementations)
       if (result.technique != kReferenceSpec && !result.frames.empty())
-        rows.push_back(energy_row(report, result, implementation));
+        rows.push_back(energy_row(report, result, implementation, of_over));
   return rows;
 }
 
@@ -86,11 +102,12 @@ Json energy_json(const Energy& energy) {
 
 }  // namespace
 
-std::string energy_text(const Report& report) {
+std::string energy_text(const Report& report, const std::string& over) {
   std::vector<std::vector<std::string>> rows = {{"technique", "implementation", "mJ"}};
   for (const EnergyTerm& term : energy_terms()) rows[0].emplace_back(term.name);
   rows[0].insert(rows[0].end(), {"W", "KiB for bins", "compared per clock"});
-  for (const EnergyRow& row : energy_rows(report)) {
+  if (!over.empty()) rows[0].push_back("mJ over " + over);
+  for (const EnergyRow& row : energy_rows(report, over)) {
     std::vector<std::string>& cells = rows.emplace_back();
     cells = {row.result.technique, row.implementation.name, ends_text(row.mean.total())};
     for (const EnergyTerm& term : energy_terms()) cells.push_back(ends_text(row.mean.*term.part));
@@ -98,14 +115,15 @@ std::string energy_text(const Report& report) {
     for (const auto& [unit, rate] : row.rates)
       compared += (compared.empty() ? "" : ", ") + unit + format(" %.0f", rate);
     cells.insert(cells.end(), {ends_text(row.watts()), format("%.0f", row.on_chip_bytes / 1024), compared});
+    if (!over.empty()) cells.push_back(row.quotient ? ends_text(*row.quotient) : "");
   }
   return "\nmodelled mJ on " + report.hardware.label + " (" + report.hardware.name + ")\n" +
-         align_columns(rows, {0, 1, rows[0].size() - 1});
+         align_columns(rows, {0, 1, rows[0].size() - 1, rows[0].size() - (over.empty() ? 1 : 2)});
 }
 
-Json energy_json(const Report& report) {
+Json energy_json(const Report& report, const std::string& over) {
   Json json = Json::array();
-  for (const EnergyRow& row : energy_rows(report)) {
+  for (const EnergyRow& row : energy_rows(report, over)) {
     Json stages = Json::object(), rates = Json::object();
     for (const auto& [stage, energy] : row.stages) stages[name_of(stage)] = energy_json(energy);
     for (const auto& [unit, rate] : row.rates) rates[unit] = rate;
@@ -117,6 +135,7 @@ Json energy_json(const Report& report) {
                     {"watts", ends_json(row.watts())},
                     {"on_chip_bytes", row.on_chip_bytes},
                     {"compared_per_clk", rates}});
+    if (row.quotient) json.elements().back()["ratio_interval"] = ends_json(*row.quotient);
   }
   return json;
 }

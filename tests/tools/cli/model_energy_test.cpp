@@ -43,6 +43,7 @@ TEST_F(ModelEnergy, ModelFindsTheEnergyOfTheRun) {
   EXPECT_GT(instructions(0), instructions(1));
   EXPECT_NE(succeed({"model", path("out"), "--energy"}).find("modelled mJ on titan_v"), std::string::npos);
   EXPECT_EQ(succeed({"model", path("out")}).find("mJ"), std::string::npos);
+  EXPECT_NE(succeed({"model", path("out"), "--energy", "--over", "msaa:8"}).find("mJ over msaa:8"), std::string::npos);
 }
 
 TEST_F(ModelEnergy, HardwareWithoutItIsRefused) {

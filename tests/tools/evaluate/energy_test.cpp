@@ -80,6 +80,25 @@ TEST(Energy, SumsAddEachPart) {
   expect_interval(sum.dram, 126, 252);
 }
 
+// Multiplications of 1 to 2 pJ and bytes of DRAM of 10 to 30 pJ: (10 m + 10 d) / (5 m + 20 d) is greatest for m = 2 and
+// d = 10, 120 / 210, and least for m = 1 and d = 30, 310 / 605. With additions, which only the first has, both their
+// ends count: a from 0 to 100, 220 / 210. What has none over what has some is 0.
+TEST(Energy, QuotientsHaveTheSameEnergiesAboveAndBelow) {
+  Hardware hardware = titan_v();
+  for (auto& [name, range] : hardware.picojoules) range = {0, 1e6};
+  hardware.picojoules["mul_add"] = {1, 2}, hardware.picojoules["dram_byte"] = {10, 30};
+  hardware.picojoules["add"] = {0, 100};
+  const auto work = [&](std::uint64_t mul_add, std::uint64_t add, std::uint64_t dram_bytes) {
+    StageCounters stage{StageId::compose};
+    stage.ops.mul_add = mul_add, stage.ops.add = add, stage.dram_bytes = dram_bytes;
+    return priced_work(hardware, hardware.implementations.at(1), {stage});
+  };
+  expect_interval(quotient_of(hardware, work(10, 0, 10), work(5, 0, 20)), 310.0 / 605, 120.0 / 210);
+  expect_interval(quotient_of(hardware, work(10, 1, 10), work(5, 0, 20)), 310.0 / 605, 220.0 / 210);
+  expect_interval(quotient_of(hardware, work(3, 0, 6), work(1, 0, 2)), 3, 3);
+  expect_interval(quotient_of(hardware, work(0, 0, 0), work(1, 0, 2)), 0, 0);
+}
+
 // A billion invocations with 50 multiplications, 50 additions and 5 probes of 16 bytes.
 TEST(Energy, ShadingCostsTakeEnergy) {
   StageCounters shade{StageId::shade};
@@ -159,7 +178,7 @@ TEST(Energy, ErrorsNameTheKey) {
       {range, R"("mul_add":"")", "/energy/sources/mul_add: expected where the number is from, or that it is a choice"},
       {R"("mul_add":[2,1])", source, "/energy/picojoules/mul_add: expected the lowest before the highest"},
       {R"("mul_add":[1])", source, "/energy/picojoules/mul_add: expected two numbers, the lowest and the highest"},
-      {R"("mul_add":[-1,1])", source, "/energy/picojoules/mul_add/0: expected a number from 0 to 1000000, found -1"},
+      {R"("mul_add":[-1,1])", source, "/energy/picojoules/mul_add/0: expected a number from 1e-06 to 1000000, found -1"},
       {range + R"(,"mul":[1,2])", source, "/energy/picojoules/mul: expected one of"}};
   for (const auto& [ranges, sources, start] : cases) {
     const std::string error = refusal(ranges, sources);
