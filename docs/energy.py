@@ -3,8 +3,8 @@
 
 usage: docs/energy.py PROGRAM DIR...
 
-`beampipe run TRACE -t SPEC... --hardware PART -o DIR` wrote each folder, with the same techniques, of which the first two
-are compared. Prints millijoules per frame, the least and the most, by part and implementation.
+`beampipe run TRACE -t SPEC... --hardware PART -o DIR` wrote each folder, with the same techniques, of which the first
+two are compared. Prints millijoules per frame, the least and the most, by part and implementation.
 """
 import json
 import subprocess

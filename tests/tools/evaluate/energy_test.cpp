@@ -178,7 +178,8 @@ TEST(Energy, ErrorsNameTheKey) {
       {range, R"("mul_add":"")", "/energy/sources/mul_add: expected where the number is from, or that it is a choice"},
       {R"("mul_add":[2,1])", source, "/energy/picojoules/mul_add: expected the lowest before the highest"},
       {R"("mul_add":[1])", source, "/energy/picojoules/mul_add: expected two numbers, the lowest and the highest"},
-      {R"("mul_add":[-1,1])", source, "/energy/picojoules/mul_add/0: expected a number from 1e-06 to 1000000, found -1"},
+      {R"("mul_add":[-1,1])", source,
+       "/energy/picojoules/mul_add/0: expected a number from 1e-06 to 1000000, found -1"},
       {range + R"(,"mul":[1,2])", source, "/energy/picojoules/mul: expected one of"}};
   for (const auto& [ranges, sources, start] : cases) {
     const std::string error = refusal(ranges, sources);
