@@ -1,4 +1,4 @@
-// beampipe model: the modelled times of finished runs, with other rates or at other costs of shading.
+// beampipe model: the modelled times and energy of finished runs, with other rates or at other costs of shading.
 
 #include <iostream>
 #include <memory>
@@ -6,7 +6,9 @@
 
 #include "tools/cli/commands.h"
 #include "tools/cli/hardware_options.h"
+#include "tools/evaluate/energy.h"
 #include "tools/evaluate/remodel.h"
+#include "tools/report/energy_text.h"
 #include "tools/report/report_file.h"
 #include "tools/report/times_text.h"
 
@@ -17,7 +19,7 @@ struct ModelArguments {
   std::vector<std::string> folders;
   HardwareOptions hardware;
   TimesOptions times;
-  bool json = false;
+  bool energy = false, json = false;
 };
 
 Report model(const std::string& folder, const Hardware* other, const ModelArguments& arguments) {
@@ -30,6 +32,8 @@ Report model(const std::string& folder, const Hardware* other, const ModelArgume
     if (!report.memory.modelled)
       throw ReportError(name + ": expected a run that modelled memory, found one with --no-memory-model");
     report.hardware = with_costs(report.hardware, arguments.hardware);
+    if (arguments.energy && !has_energy(report.hardware))
+      throw ReportError(name + ": --energy: expected hardware with \"energy\", found none in " + report.hardware.named);
     return report;
   } catch (const OtherMemory& error) {
     throw ReportError(name + ": " + error.what());
@@ -44,10 +48,13 @@ void model(const ModelArguments& arguments) {
   Json json = Json::array();
   for (const std::string& folder : arguments.folders) {
     const Report report = model(folder, other ? &*other : nullptr, arguments);
-    if (arguments.json)
+    if (arguments.json) {
       json.push_back({{"folder", folder}, {"times", times_json(report, arguments.times)}});
-    else
-      std::cout << folder << ":" << times_text(report, arguments.times);
+      if (arguments.energy) json.elements().back()["energy"] = energy_json(report, arguments.times.over);
+    } else {
+      std::cout << folder << ":" << times_text(report, arguments.times)
+                << (arguments.energy ? energy_text(report, arguments.times.over) : std::string());
+    }
   }
   if (arguments.json) std::cout << json_text(json);
 }
@@ -60,10 +67,12 @@ void add_model_command(CommandLine& line) {
   command.add("DIR", arguments->folders, "folders that run or compare wrote").required();
   add_hardware_options(command, arguments->hardware, "that of the run");
   command.add("--over", arguments->times.over,
-              "a technique of the run: also print the times of the others over its time, with intervals");
+              "a technique of the run: also print times and energies of the others over its own, with intervals");
   command.add_flag("--sensitivity", arguments->times.sensitivity,
                    "with --over: also print what each rate makes of the quotients at the ends of its range");
-  command.add_flag("--json", arguments->json, "print JSON, with the time and the busiest unit of each stage");
+  command.add_flag("--energy", arguments->energy, "also print modelled energy, and what stands for area");
+  command.add_flag("--json", arguments->json,
+                   "print JSON, with the time, the busiest unit and the energy of each stage");
   command.footer(
       "Renders nothing: times follow from the counts in report.json. Hardware with another memory system than that of "
       "the\nrun counts other bytes and is refused.\n\n"
@@ -74,6 +83,9 @@ void add_model_command(CommandLine& line) {
       "uneven        how much longer the busiest core works than the mean\n"
       "on chip       what the pixels of a bin take, and how many bins a core has room for\n"
       "even          after a quotient: the interval contains 1\n\n"
+      "mJ            energy of switching, lowest to highest; in what follows, by where it goes\n"
+      "W             this energy over the time on cores\n"
+      "KiB for bins  memory on chip for the pixels of all bins that all cores hold\n\n"
       "Example:\n"
       "  beampipe run fence.json -t beam msaa:8 -o out\n"
       "  beampipe model out --material-cost 200,4 --over msaa:8 --sensitivity");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "stages/cost/counters.h"
+#include "tools/evaluate/energy.h"
 #include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/saved_work.h"
 
@@ -31,6 +32,35 @@ void add_counter(ObjectForm<StageCounters>& object, const CounterInfo& counter) 
       counter.meaning);
 }
 
+Form<Interval> interval_form() {
+  return ObjectForm<Interval>()
+      .written("low", &Interval::low, form::amount(), "The least.")
+      .written("high", &Interval::high, form::amount(), "The most.");
+}
+
+// What add_energy writes.
+Json energy_schema() {
+  const Form<Interval> interval = interval_form();
+  const Json of_each = form::by_name(interval).schema;
+  ObjectForm<Energy> object;
+  for (const EnergyTerm& term : energy_terms())
+    object.added(term.name, term.by_implementation ? of_each : interval.schema,
+                 std::string("Of ") + term.meaning + ".");
+  object.added("total", of_each, "All of these.");
+  return Form<Energy>(object).schema;
+}
+
+// Adds an implementation's energy to a stage or a frame.
+void add_energy(Json& object, const std::string& implementation, const Energy& energy) {
+  const auto written = interval_form().write;
+  Json& of = object["energy_mj"];
+  for (const EnergyTerm& term : energy_terms()) {
+    Json& part = of[term.name];
+    (term.by_implementation ? part[implementation] : part) = written(energy.*term.part);
+  }
+  of["total"][implementation] = written(energy.total());
+}
+
 Form<StageCounters> make_stage_form() {
   ObjectForm<StageCounters> stage, operations;
   stage.written(
@@ -48,7 +78,10 @@ Form<StageCounters> make_stage_form() {
   return stage
       .added("modelled_ms", form::by_name(form::amount()).schema,
              "Milliseconds that the modelled hardware takes for this stage, by implementation.")
-      .added("busiest_unit", form::by_name(form::text()).schema, "The unit that takes so long, by implementation.");
+      .added("busiest_unit", form::by_name(form::text()).schema, "The unit that takes so long, by implementation.")
+      .added("energy_mj", energy_schema(),
+             "Millijoules that the modelled hardware takes for this stage, by where they go; by implementation where "
+             "they differ.");
 }
 
 const Form<StageCounters>& stage_form() {
@@ -183,7 +216,8 @@ Form<FrameOf> make_frame_form() {
       .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),
                "Work that was not done, by name (`beampipe counters`).")
       .written("stages", member(&Frame::stages), form::list(stage_form()), "The stages, in the order of the pipeline.")
-      .added("modelled_ms", form::by_name(modelled_form()).schema, "Modelled times, by implementation.");
+      .added("modelled_ms", form::by_name(modelled_form()).schema, "Modelled times, by implementation.")
+      .added("energy_mj", energy_schema(), "Modelled energy, in millijoules: the sum over the stages.");
 }
 
 const Form<FrameOf>& frame_form() {
@@ -221,6 +255,11 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
       stage["modelled_ms"][implementation.name] = of_stage.ms;
       stage["busiest_unit"][implementation.name] = of_stage.busiest;
     }
+    if (!has_energy(hardware)) continue;
+    const std::vector<StageEnergy> energy = modelled_energy(hardware, implementation, frame.stages);
+    add_energy(json, implementation.name, sum_of(energy));
+    for (const StageEnergy& each : energy)
+      add_energy(*find_stage(stages, name_of(each.stage)), implementation.name, each.energy);
   }
   return json;
 }

@@ -18,8 +18,8 @@ Form<double> rmse_form();
 // The JSON Schema of a frame in report.json.
 Json frame_schema();
 
-// A frame, as in report.json. The framebuffer of `technique` and times modelled for `hardware` are included; both may
-// be empty.
+// A frame, as in report.json. The framebuffer of `technique` and times and energy modelled for `hardware` are
+// included; both may be empty.
 Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware);
 
 // The one of "stages" that is called so; null if there is none.

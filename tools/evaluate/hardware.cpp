@@ -14,7 +14,8 @@ namespace {
 
 using UnitsOfStages = decltype(Implementation::units);
 
-constexpr double kLeastRate = 1e-6, kMostRate = 1e12;  // so that no time becomes infinite
+constexpr double kLeastRate = 1e-6, kMostRate = 1e12;  // so that no time or quotient becomes infinite
+constexpr const char* kSource = "where the number is from, or that it is a choice";
 
 Form<ShadingCost> cost_form() {
   constexpr double kMost = 1e6;
@@ -63,12 +64,26 @@ Form<Implementation> implementation_form() {
           "on what a bin has on chip.");
 }
 
-Form<RateRange> range_form() {
-  const Form<double> rate = form::number(kLeastRate, kMostRate);
-  return {form::array_schema(rate.schema, 2), [rate](const JsonCursor& at, RateRange& range) {
-            if (at.elements().size() != 2) at.fail("two numbers, the lowest and the highest rate");
-            range = {rate(at.elements()[0]), rate(at.elements()[1])};
+Form<RateRange> range_form(const Form<double>& number) {
+  return {form::array_schema(number.schema, 2), [number](const JsonCursor& at, RateRange& range) {
+            if (at.elements().size() != 2) at.fail("two numbers, the lowest and the highest");
+            range = {number(at.elements()[0]), number(at.elements()[1])};
           }};
+}
+
+Form<std::map<std::string, RateRange>> energy_form() {
+  constexpr double kMostEnergy = 1e6;
+  using Energies = std::map<std::string, RateRange>;
+  return ObjectForm<Energies>()
+      .required("picojoules", std::identity(),
+                form::record(hardware_energies(), true, range_form(form::number(kLeastRate, kMostEnergy))),
+                "[lowest, highest] of each operation and byte.")
+      .add(form::unused<Energies>("sources", true, form::record(hardware_energies(), true, form::text(kSource)),
+                                  "Where each of these is from, or that it is a choice, by its name."))
+      .check([](const JsonCursor& at, const Energies& energies) {
+        for (const auto& [name, range] : energies)
+          if (range.low > range.high) at["picojoules"][name].fail("the lowest before the highest");
+      });
 }
 
 // The rates lie in their ranges.
@@ -92,11 +107,12 @@ Form<Hardware> hardware_form() {
       .required("memory_system", &Hardware::memory, memory_system_form(),
                 "Caches, memory on chip and cores, as far as they differ from those of a Titan V.")
       .required("rates", &Hardware::rates, form::record(hardware_rates(), true, rate), "What the units do per clock.")
-      .optional("ranges", &Hardware::ranges, form::record(hardware_rates(), false, range_form()),
+      .optional("ranges", &Hardware::ranges, form::record(hardware_rates(), false, range_form(rate)),
                 "Where a rate lies, [lowest, highest], as far as its source tells. Others are taken as exact.")
-      .add(form::unused<Hardware>(
-          "sources", true, form::record(sources, true, form::text("where the number is from, or that it is a choice")),
-          "Where each number is from, or that it is a choice, by its name."))
+      .add(form::unused<Hardware>("sources", true, form::record(sources, true, form::text(kSource)),
+                                  "Where each number is from, or that it is a choice, by its name."))
+      .optional("energy", &Hardware::picojoules, energy_form(),
+                "What operations and bytes take. Without it no energy is modelled.")
       .required("implementations", &Hardware::implementations,
                 form::named(implementation_form(), &Implementation::name, "implementation"),
                 "Ways to do the same work, by name: which units each stage uses beside L2 and DRAM.")
@@ -139,6 +155,25 @@ const std::vector<form::Key>& hardware_rates() {
       {"l2_bytes_per_clk", "Bytes that L2 moves."},
       {"dram_bytes_per_clk", "Bytes that DRAM moves at its peak."},
       {"dram_efficiency", "The part of the peak that requests reach, up to 1."},
+  };
+  return all;
+}
+
+const std::vector<form::Key>& hardware_energies() {
+  static const std::vector<form::Key> all = {
+      {"mul_add", "A multiplication."},
+      {"add", "An addition or comparison."},
+      {"bit", "An operation on bits."},
+      {"fetch", "A look-up in a table."},
+      {"special", "A division, square root or the like."},
+      {"convert", "A conversion between types."},
+      {"wide", "What an operation on 64-bit integers takes more than one on 32 bits."},
+      {"instruction", "What an instruction takes in a lane of the shader cores beside its arithmetic."},
+      {"on_chip_byte",
+       "A byte in the memory next to the units: registers, queues, pixels on chip, L1, caches of ROPs."},
+      {"texture_byte", "A byte of a texel that a filter reads, and its part of the filter."},
+      {"l2_byte", "A byte of L2."},
+      {"dram_byte", "A byte of DRAM."},
   };
   return all;
 }

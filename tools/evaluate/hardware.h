@@ -1,8 +1,8 @@
 // Descriptions of hardware: one file describes one GPU.
 //
 // A description is a JSON file. It holds the memory system, with which bytes are counted, the rates of the units per
-// clock, each with its source or marked as a choice, and implementations, which say on which units each stage runs;
-// every stage uses L2 and DRAM too. Those in tools/evaluate/hardware/ are built in.
+// clock and what their work takes in picojoules, each with its source or marked as a choice, and implementations, which
+// say on which units each stage runs; every stage uses L2 and DRAM too. Those in tools/evaluate/hardware/ are built in.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +31,7 @@ struct ShadingCost {
   double registers = 0;  // that an invocation takes; the fewer invocations fit, the slower they are
 };
 
-// Where a rate lies, as far as its source tells.
+// Where a rate or an energy lies, as far as its source tells.
 struct RateRange {
   double low = 0, high = 0;
   bool operator==(const RateRange&) const = default;
@@ -43,8 +43,9 @@ struct Hardware {
   std::string name;
   double clock_mhz = 0;
   MemoryParameters memory = {};
-  std::map<std::string, double> rates;      // under the names in the file
-  std::map<std::string, RateRange> ranges;  // of some of them; others are taken as exact
+  std::map<std::string, double> rates;          // under the names in the file
+  std::map<std::string, RateRange> ranges;      // of some of them; others are taken as exact
+  std::map<std::string, RateRange> picojoules;  // of operations and bytes, under the names in the file; or none
   std::vector<Implementation> implementations;
   // `light` is what lighting costs: in `light` where a technique has this stage, else in `shade` beside `material`.
   ShadingCost material, light;
@@ -57,6 +58,9 @@ Hardware titan_v();
 
 // The rates, in the order of the file.
 const std::vector<form::Key>& hardware_rates();
+
+// The energies, in the order of the file.
+const std::vector<form::Key>& hardware_energies();
 
 // The JSON Schema of descriptions.
 Json hardware_schema();

@@ -133,6 +133,10 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   return times;
 }
 
+bool has_light(const std::vector<StageCounters>& stages) {
+  return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage.id == StageId::light; });
+}
+
 void add_times(std::map<std::string, double>& busy, const std::map<std::string, double>& times) {
   for (const auto& [unit, ms] : times) busy[unit] += ms;
 }
@@ -184,13 +188,19 @@ double imbalance(std::span<const std::uint64_t> bin_operations, std::uint32_t co
   return all == 0 ? 1 : static_cast<double>(last) * cores / static_cast<double>(all);
 }
 
+std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vector<StageCounters>& stages) {
+  std::vector<StageCounters> priced;
+  double registers = 0;
+  for (const StageCounters& stage : stages) priced.push_back(with_costs(hardware, stage, has_light(stages), registers));
+  return priced;
+}
+
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work) {
-  const bool has_light =
-      std::any_of(work.stages.begin(), work.stages.end(), [](const auto& s) { return s.stage.id == StageId::light; });
+  const bool is_lit_apart = has_light(work.stages);
   ModelledTime time;
   std::map<std::string, double> before, of_bins;
   for (const StageCounters& stage : work.stages) {
-    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, has_light, work.bin_bytes);
+    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, is_lit_apart, work.bin_bytes);
     if (const auto shading = of_stage.extract("shading"))  // the same lanes
       of_stage["shader"] = std::max(of_stage["shader"], shading.mapped());
     add_times(stage.stage.id == StageId::vertex_setup ? before : of_bins, of_stage);

@@ -34,6 +34,9 @@ std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes);
 // that is free first. 1 if there is no work.
 double imbalance(std::span<const std::uint64_t> bin_operations, std::uint32_t cores);
 
+// The counters of a frame's stages with what the hardware says that invocations of fragment shaders cost.
+std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vector<StageCounters>& stages);
+
 struct StageTime {
   Stage stage;
   double ms = 0;

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/energy.h"
 #include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/modelled_time.h"
@@ -20,6 +21,7 @@ struct Source {
 
 // Views of the tables of techniques and frames, stages, and claims.
 constexpr const char *kAccuracy = "accuracy", *kMemory = "memory", *kTime = "time";
+constexpr const char *kLeast = "least energy", *kMost = "most energy";
 constexpr const char *kItems = "items", *kOperations = "operations", *kBytes = "bytes", *kTexels = "texels";
 constexpr const char *kNumbers = "numbers", *kSources = "sources";
 
@@ -122,7 +124,28 @@ const char* view_of(const CounterInfo& counter) {
   return std::string_view(counter.unit) == "bytes" ? kBytes : kItems;
 }
 
-// The counters of the registry, two ratios, and modelled times.
+// Two columns for each part of the modelled energy: the least and the most of it, each with a view of its own.
+void add_energy(std::vector<Source>& columns, const ReportFile& report, const std::string& unit) {
+  const auto add = [&](const std::string& name, const std::string& meaning, const std::string& implementation) {
+    const bool is_of_one = !implementation.empty();
+    const std::string key = "energy_mj_" + name + (is_of_one ? "_" + implementation : "");
+    const std::string pointer = "/energy_mj/" + name + (is_of_one ? "/" + implementation : "");
+    const std::string title = name + (is_of_one ? ", " + implementation : "");
+    columns.push_back({{key + "_low", title + ", least", unit, "The least modelled energy of " + meaning + ".", kLeast},
+                       pointer + "/low"});
+    columns.push_back({{key + "_high", title + ", most", unit, "The most modelled energy of " + meaning + ".", kMost},
+                       pointer + "/high"});
+  };
+  for (const EnergyTerm& term : energy_terms())
+    if (!term.by_implementation) add(term.name, term.meaning, "");
+  for (const std::string& implementation : implementations_of(report)) {
+    for (const EnergyTerm& term : energy_terms())
+      if (term.by_implementation) add(term.name, term.meaning, implementation);
+    add("total", "all of these", implementation);
+  }
+}
+
+// The counters of the registry, two ratios, modelled times and energy.
 std::vector<Source> stage_columns(const ReportFile& report) {
   std::vector<Source> columns = {
       {{"technique", "technique", "", "The technique's spec."}, "/technique"},
@@ -149,6 +172,7 @@ std::vector<Source> stage_columns(const ReportFile& report) {
     columns.push_back({{"busiest_unit_" + implementation, "busiest, " + implementation, "",
                         "The unit that takes so long, in the last frame.", kTime},
                        "/busiest_unit/" + implementation});
+  add_energy(columns, report, "mJ");
   return columns;
 }
 
@@ -241,9 +265,9 @@ Table make_table(const std::string& name, const std::string& title, const std::s
   return table;
 }
 
-// Adds two columns after the DRAM bytes for each implementation of the modelled hardware.
-std::vector<Source> with_modelled_times(std::vector<Source> sources, const ReportFile& report,
-                                        const std::string& unit) {
+// Adds two columns after the DRAM bytes for each implementation of the modelled hardware, and those of energy.
+std::vector<Source> with_modelled(std::vector<Source> sources, const ReportFile& report, const std::string& unit,
+                                  const std::string& energy_unit) {
   auto place =
       std::find_if(sources.begin(), sources.end(), [](const Source& s) { return s.column.key == "dram_bytes"; });
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
@@ -260,6 +284,7 @@ std::vector<Source> with_modelled_times(std::vector<Source> sources, const Repor
                         pointer + "/sum"};
     place = std::next(sources.insert(std::next(place), {overlap, scheduled, sum}));
   }
+  add_energy(sources, report, energy_unit);
   return sources;
 }
 
@@ -317,6 +342,13 @@ std::vector<Json> technique_records(const ReportFile& report) {
     add_room(report, result, record);
     for (const auto& [implementation, ms] : summary.modelled_ms)
       record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"scheduled", ms.scheduled}, {"sum", ms.sum}};
+    Json energy;
+    for (const Json& frame : result.at("frames").elements())
+      if (const Json* const of_frame = frame.find("energy_mj")) add_numbers(energy, *of_frame);
+    if (!energy.is_null()) {
+      divide_numbers(energy, result.at("frames").size());
+      record["energy_mj"] = energy;
+    }
     if (const Json* visibility = result.find("visibility"))
       if (const auto emr = read_emr(*visibility)) record["visibility"]["emr_bound"] = bound_text(*emr);
     if (summary.emr) {
@@ -386,15 +418,15 @@ std::vector<Table> report_tables(const ReportFile& report) {
   const std::string mean = is_sequence ? "Means over the frames. " : "";
   std::vector<Table> tables;
   tables.push_back(make_table("techniques", "Techniques", mean,
-                              with_modelled_times(kTechniqueColumns, report, "ms per frame"),
+                              with_modelled(kTechniqueColumns, report, "ms per frame", "mJ per frame"),
                               technique_records(report)));
   tables.push_back(make_table("stages", "Stages",
                               mean +
-                                  "Bytes and times add up to those of the technique, times to the sum and not to the "
-                                  "overlap.",
+                                  "Bytes, times and energy add up to those of the technique, times to the sum and not "
+                                  "to the overlap.",
                               stage_columns(report), stage_records(report)));
   if (is_sequence)
-    tables.push_back(make_table("frames", "Frames", "", with_modelled_times(kFrameColumns, report, "ms"), frames));
+    tables.push_back(make_table("frames", "Frames", "", with_modelled(kFrameColumns, report, "ms", "mJ"), frames));
   const std::vector<Json> saved = saved_records(results);
   if (!saved.empty()) tables.push_back(make_table("saved", "Saved work", mean, saved_columns(), saved));
   tables.push_back(make_table("framebuffer", "Framebuffers", "", kSurfaceColumns, members(results, "framebuffer")));

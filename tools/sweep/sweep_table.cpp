@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "tools/evaluate/energy.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/files/csv.h"
 
@@ -104,6 +105,8 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
   columns.push_back({"modelled_scheduled_ms", "ms", "the same, with bins one by one on cores"});
   columns.push_back({"modelled_sum_ms", "ms", "the same, one stage after the other"});
   columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
+  columns.push_back({"energy_mj_low", "mJ", "modelled energy, the least; the mean over the frames"});
+  columns.push_back({"energy_mj_high", "mJ", "the same, the most"});
   return columns;
 }
 
@@ -118,16 +121,20 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   values.emplace_back(implementation.name);
   double overlap = 0, scheduled = 0, sum = 0, longest = -1;
   std::string busiest;
+  Energy energy;
   for (const FrameReport& frame : report.frames) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
     overlap += time.overlap_ms, scheduled += time.scheduled_ms, sum += time.sum_ms;
     if (time.overlap_ms > longest) longest = time.overlap_ms, busiest = time.busiest;
+    if (has_energy(hardware)) energy += sum_of(modelled_energy(hardware, implementation, frame.stages));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
   values.emplace_back(overlap / frames);
   values.emplace_back(scheduled / frames);
   values.emplace_back(sum / frames);
   values.emplace_back(busiest);
+  for (const double mj : {energy.total().low, energy.total().high})
+    values.push_back(has_energy(hardware) ? Json(mj / frames) : Json());
 }
 
 // The errors of all pictures of the plan, each read once.

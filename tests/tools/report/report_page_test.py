@@ -320,7 +320,11 @@ class ReportPage(PageTest):
             "wall_ms_max": of("wall_ms", "max"), "runs": of("wall_ms", "runs"), "rmse": of("error", "rmse"),
             "bias": of("error", "bias"),
             **{f"modelled_ms_{way}_{kind}": of("modelled_ms", way, kind)
-               for way in ["shaders", "fixed_function"] for kind in ["overlap", "scheduled", "sum"]}})
+               for way in ["shaders", "fixed_function"] for kind in ["overlap", "scheduled", "sum"]},
+            **{f"energy_mj_{part}_{end}": of("energy_mj", part, end)
+               for part in ["operations", "on_chip", "l2", "dram"] for end in ["low", "high"]},
+            **{f"energy_mj_{part}_{way}_{end}": of("energy_mj", part, way, end) for part in ["instructions", "total"]
+               for way in ["shaders", "fixed_function"] for end in ["low", "high"]}})
 
     def test_memory_of_cards_and_frontier_has_the_a_buffer_in_it(self):
         for result in self.results.values():
@@ -391,8 +395,8 @@ class ReportPage(PageTest):
         def add(sums, record, prefix=""):
             for key, value in record.items():
                 if isinstance(value, dict):
-                    add(sums, value, "" if key == "ops" else key + "_")
-                elif key != "stage":
+                    add(sums, value, "" if key == "ops" else prefix + key + "_")
+                elif not isinstance(value, str):
                     name = "ops" if key == "total" else prefix + key
                     sums[name] = sums.get(name, 0) + value
 
