@@ -228,7 +228,7 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   Command cluster = command.add_group("On several machines, which share the output folder");
   cluster.add_flag("--slurm", arguments->slurm,
                    "submit the sweep to Slurm: an array of tasks, and a job that waits for them and makes the table");
-  cluster.add_flag("--dry-run", arguments.dry_run,
+  cluster.add_flag("--dry-run", arguments->dry_run,
                    "with --slurm: write the scripts, and print the commands that would submit them");
   cluster
       .add("--tasks", arguments->tasks,
