@@ -30,6 +30,7 @@ FACES = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "alpha", "z3
          "msaa:256"]
 CAPACITIES = {32: "beam:bits=32,pool=16", 64: "beam:bits=64,pool=24", 128: "beam:bits=128,pool=30", 256: "beam"}
 POOLS = [16, 30, 40, 60, 80, 128]  # the last one has room for nearly all
+ROOM = 2 * 32 * 32 * 160  # bytes on chip: two bins fit on a core, whatever the spec, so that bins are as large as it says
 POOLED = {f"beam:{options}": [f"beam:{options}{',' if options else ''}pool={pool}" for pool in POOLS]
           for options in ("bits=256,bin=32", "bits=256,bin=16", "bits=128,bin=32", "bits=128,bin=16")}
 OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:shape=128x3", "acaa:8",
@@ -67,7 +68,8 @@ def sweep(program, models, folder, plan, other_way=False):
     folder = pathlib.Path(folder)
     scene_traces.main(program, models, "320", "180", folder / "scenes", other_way)
     traces = [f"scenes/{trace.name}" for trace in sorted((folder / "scenes").glob("*.json"))]
-    plan = {"beampipe_sweep": 1, "traces": traces, "implementations": ["shaders"], "errors": True} | plan
+    plan = {"beampipe_sweep": 1, "traces": traces, "implementations": ["shaders"], "errors": True,
+            "memory_system.on_chip_bytes": [ROOM]} | plan
     (folder / "plan.json").write_text(json.dumps(plan, indent=1) + "\n")
     subprocess.run([program, "sweep", folder / "plan.json", "-o", folder], check=True, stdout=subprocess.DEVNULL)
 

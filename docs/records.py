@@ -26,7 +26,8 @@ def main():
                "operations of `compose`, `pool=40`", "`pool=60`")
     for trace in traces:
         with tempfile.TemporaryDirectory() as folder:
-            found = results(program, "run", trace, POOLS.values(), folder, "--frames", "0", "--no-memory-model")
+            found = results(program, "run", trace, POOLS.values(), folder, "--frames", "0", "--no-memory-model",
+                            "--on-chip-memory", "320KB")
         of = {pool: found[spec]["frames"][0]["pixel_counters"] for pool, spec in POOLS.items()}
         operations = {pool: stages(found[spec])["compose"]["ops"]["total"] for pool, spec in POOLS.items()}
         record = of[40]["record_bytes"]
