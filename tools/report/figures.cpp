@@ -57,10 +57,11 @@ std::vector<Figure> report_figures(const ReportFile& report) {
          "Memory and accuracy",
          "Up and to the left is better. Above the line a technique needs less memory than MSAA with the same "
          "error. The memory includes A-buffer and translucent layer at their peaks. Triangles mark bounds.",
-         {{"frontier", frontier_plot({report})}}});
+         {{"on chip and off chip", storage_plot({report})}, {"off chip", frontier_plot({report})}}});
     Figure speed{"cost", "Time and error", "Down and to the left is better.", {}};
     for (const std::string& implementation : implementations)
-      speed.choices.emplace_back("modelled time: " + implementation, speed_plot({report}, implementation));
+      speed.choices.emplace_back("modelled time: " + name_of(report, implementation),
+                                 speed_plot({report}, implementation));
     speed.choices.emplace_back("wall time of the simulator", speed_plot({report}));
     figures.push_back(std::move(speed));
   }
@@ -69,7 +70,7 @@ std::vector<Figure> report_figures(const ReportFile& report) {
               "Modelled time, one stage after the other. The black mark is where all stages at once would end.",
               {}};
   for (const std::string& implementation : implementations)
-    time.choices.emplace_back("modelled time: " + implementation, time_plot(report, implementation));
+    time.choices.emplace_back("modelled time: " + name_of(report, implementation), time_plot(report, implementation));
   if (!time.choices.empty()) figures.push_back(std::move(time));
   Figure bytes{"stages", "Bytes per stage", "What each technique reads and writes in a frame.", {}};
   for (const auto& [label, key] : {std::pair{"DRAM: beyond the modelled caches", "dram_bytes"},

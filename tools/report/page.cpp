@@ -1,6 +1,7 @@
 #include "tools/report/page.h"
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/hardware.h"
 #include "tools/files/shell_word.h"
 #include "tools/report/cards.h"
 #include "tools/report/conditions.h"
@@ -56,6 +57,14 @@ std::string script_json(const Json& json) {
   return text;
 }
 
+// The description, to be saved under its name; null if there is none.
+Json hardware_file(const ReportFile& report) {
+  const Json* const hardware = report.json.find("hardware");
+  if (!hardware) return nullptr;
+  const std::string label = label_of(report.json.value("hardware_named", std::string("hardware")));
+  return {{"file", label + ".json"}, {"text", hardware->dump(2)}};
+}
+
 }  // namespace
 
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
@@ -65,6 +74,7 @@ std::string page_html(const ReportFile& report, const std::vector<Table>& tables
                {"frames", report.json.at("results").at(0).at("frames").size()},
                {"shown", shown},
                {"conditions", report_conditions(report)},
+               {"hardware", hardware_file(report)},
                {"summary", report_cards(report)},
                {"layers", layers},
                {"inspections", inspections},

@@ -136,7 +136,8 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
   const bool modelled = !implementation.empty();
   ScatterPlot plot{.name = modelled ? "speed_" + implementation : "speed",
                    .title = "Time and error: " + scenes_text(reports),
-                   .x_label = modelled ? "modelled time (" + implementation + ", stages overlap), ms per frame"
+                   .x_label = modelled ? "modelled time (" + name_of(reports.front(), implementation) +
+                                             ", stages overlap), ms per frame"
                                        : "wall time of the simulator, ms per frame",
                    .y_label = "RMSE, linear light (lower is better)",
                    .series = {msaa_line()}};

@@ -159,6 +159,11 @@ std::vector<std::string> implementations_of(const ReportFile& report) {
   return names;
 }
 
+std::string name_of(const ReportFile& report, const std::string& implementation) {
+  const std::string named = report.json.value("hardware_named", std::string());
+  return named.empty() ? implementation : label_of(named) + "." + implementation;
+}
+
 std::vector<Json> stage_records(const ReportFile& report) {
   std::vector<Json> records;
   for (const Json& result : report.json.at("results").elements()) {

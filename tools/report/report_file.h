@@ -72,6 +72,9 @@ TechniqueSummary read_summary(const Json& result);
 // nothing was modelled.
 std::vector<std::string> implementations_of(const ReportFile& report);
 
+// "titan_v.shaders": the implementation of the report's hardware, for people; without the latter if it has no name.
+std::string name_of(const ReportFile& report, const std::string& implementation);
+
 // One object for each technique and stage, in their order: the means over the frames of the numbers in "stages", and
 // these keys: "technique", "logical_bytes" (read and written), "ops_per_byte" (operations per logical byte) and
 // "lane_use". The last two are missing if they would divide by zero. The sums over a technique's stages are the means

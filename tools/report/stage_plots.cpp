@@ -80,7 +80,7 @@ PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
 BarPlot time_plot(const ReportFile& report, const std::string& implementation) {
   BarPlot plot = bars_of_stages(report,
                                 {"time_" + implementation, "Modelled time by stage: " + report.scene,
-                                 "modelled time (" + implementation + "), ms per frame"},
+                                 "modelled time (" + name_of(report, implementation) + "), ms per frame"},
                                 [&](const Json& stage) -> std::optional<double> {
                                   const Json* const times = stage.find("modelled_ms");
                                   return times ? std::optional(times->at(implementation).get<double>()) : std::nullopt;
@@ -125,7 +125,7 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
   ScatterPlot plot{.name = "roofline_" + spec_folder(technique),
                    .title = "Operations and bytes of each stage: " + technique + ", " + report.scene,
                    .x_label = roof ? "operations per DRAM byte" : "operations per logical byte",
-                   .y_label = roof ? "operations per second (" + roof->implementation + "), billions"
+                   .y_label = roof ? "operations per second (" + name_of(report, roof->implementation) + "), billions"
                                    : "operations, millions per frame"};
   std::string left_out;
   for (const Json& stage : stage_records(report)) {

@@ -337,9 +337,10 @@ class ReportPage(PageTest):
         for spec, result in self.results.items():
             self.assertEqual(self.card(spec)["off chip"][0], f"{self.short(result['peak_bytes_per_pixel'])} B/pixel")
 
-        points = dict(self.browser.run("""return [...document.querySelectorAll("[data-plot=frontier] .point")]
+        points = dict(self.browser.run("""return [...document.querySelectorAll("[data-plot=storage] .point")]
                                               .map((point) => [point.dataset.tip.split("\\n")[0], point.__data__.x])"""))
-        self.assertEqual(points, {spec: result["peak_bytes_per_pixel"] for spec, result in self.results.items()})
+        self.assertEqual(points, {spec: result["peak_bytes_per_pixel"] + result["on_chip_bytes_per_pixel"]
+                                  for spec, result in self.results.items()})
 
     def test_cards_hold_each_technique_against_msaa_8(self):
         self.assertEqual([title.split()[0] for title in self.texts(".card h3")], ["msaa:8", *[s for s in TECHNIQUES if s != "msaa:8"]])
@@ -372,7 +373,11 @@ class ReportPage(PageTest):
         [triangles] = {frame["triangles"] for frame in self.report["frames"]}
         self.assertEqual(found["scene"].replace("\u202f", ""), f"{triangles} triangles, 3 draws, 1 light")
         self.assertEqual(found["command"], f"beampipe compare {self.trace} -t {' '.join(TECHNIQUES)} --ladder 1,8 --causes")
-        self.assertEqual(found["hardware"], "titan_v (Titan V class, 1455 MHz)")
+        self.assertEqual(found["hardware"], "titan_v (Titan V class, 1455 MHz) save description")
+        self.assertEqual(json.loads(self.browser.run("""const link = document.querySelector("#conditions a");
+                                                        return link.download === "titan_v.json"
+                                                          ? decodeURIComponent(link.href.split(",").slice(1).join(","))
+                                                          : "null";""")), self.report["hardware"])
         self.assertRegex(found["memory system"], r"^L2 4\.5 MiB, .*compression on")
 
     def test_stages_add_up_to_techniques_and_these_are_means_of_frames(self):
@@ -446,7 +451,7 @@ class ReportPage(PageTest):
                     self.assertTrue(text == value or float(text) == float(value), f"{name} {key}: {text} and {value}")
 
     def test_plots_hold_every_technique(self):
-        for name in ["frontier", "speed_shaders"]:
+        for name in ["storage", "speed_shaders"]:
             tips = self.browser.run("""return [...document.querySelectorAll(`[data-plot=${arguments[0]}] .point`)]
                                            .map((point) => point.dataset.tip.split("\\n")[0])""", name)
             self.assertEqual(sorted(tips), sorted(TECHNIQUES))
@@ -454,7 +459,7 @@ class ReportPage(PageTest):
                                                  .map((bar) => bar.dataset.tip.split(":").slice(0, -1).length)""").__len__(),
                          len(TECHNIQUES))
         plots = {path.stem for path in (self.folder / "plots").iterdir()}
-        self.assertLessEqual({"frontier", "speed", "time_shaders", "causes", "logical_bytes", "roofline_beam_order=sorted", "roofline_msaa_8"}, plots)
+        self.assertLessEqual({"frontier", "storage", "speed", "time_shaders", "causes", "logical_bytes", "roofline_beam_order=sorted", "roofline_msaa_8"}, plots)
         self.assertIn(">msaa:8<", (self.folder / "plots" / "frontier.svg").read_text())
 
     def test_plots_hold_the_numbers_of_the_report(self):
@@ -807,7 +812,7 @@ class ComparisonOfOneTechnique(PageTest):
         self.assertEqual(list(self.card("beam")), ["on chip", "off chip", "RMSE", "EMR"])
         self.assertNotIn("multiples", self.texts("#cost-note")[0])
         self.assertFalse(self.browser.run("return document.getElementById('implementations').checkVisibility()"))
-        self.assertEqual(self.plots(), ["frontier", "speed", "logical_bytes", "roofline_beam"])
+        self.assertEqual(self.plots(), ["storage", "speed", "logical_bytes", "roofline_beam"])
 
 
 def main():

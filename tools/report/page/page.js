@@ -42,8 +42,16 @@ function startFrames(reload) {
 
 const data = JSON.parse(byId("data").textContent);
 document.querySelector("h1").append(data.scene, make("small", {}, " beampipe report"));
+// What the report was made with. The hardware's description can be saved as a file.
+function conditionText(name, text) {
+  if (name === "command") return [make("code", {}, text)];
+  if (name !== "hardware" || !data.hardware) return [text];
+  const address = `data:application/json;charset=utf-8,${encodeURIComponent(data.hardware.text)}`;
+  return [`${text} `, make("a", { href: address, download: data.hardware.file }, "save description")];
+}
+
 byId("conditions").append(...data.conditions.map(([name, text]) =>
-  make("div", {}, make("dt", {}, name), make("dd", {}, name === "command" ? make("code", {}, text) : text))));
+  make("div", {}, make("dt", {}, name), make("dd", {}, ...conditionText(name, text)))));
 startCards(data.summary);
 startFigures(data.figures);
 byId("tables").append(...data.tables.map(makeTable));
