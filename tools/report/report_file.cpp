@@ -159,9 +159,13 @@ std::vector<std::string> implementations_of(const ReportFile& report) {
   return names;
 }
 
+std::string hardware_label(const ReportFile& report) {
+  return label_of(report.json.value("hardware_named", std::string()));
+}
+
 std::string name_of(const ReportFile& report, const std::string& implementation) {
-  const std::string named = report.json.value("hardware_named", std::string());
-  return named.empty() ? implementation : label_of(named) + "." + implementation;
+  const std::string label = hardware_label(report);
+  return label.empty() ? implementation : label + "." + implementation;
 }
 
 std::vector<Json> stage_records(const ReportFile& report) {

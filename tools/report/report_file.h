@@ -72,6 +72,9 @@ TechniqueSummary read_summary(const Json& result);
 // nothing was modelled.
 std::vector<std::string> implementations_of(const ReportFile& report);
 
+// "titan_v": the hardware whose times are modelled; empty if it has no name.
+std::string hardware_label(const ReportFile& report);
+
 // "titan_v.shaders": the implementation of the report's hardware, for people; without the latter if it has no name.
 std::string name_of(const ReportFile& report, const std::string& implementation);
 

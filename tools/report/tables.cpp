@@ -93,6 +93,7 @@ const std::vector<Source> kTechniqueColumns = {
       "first.",
       kTime},
      "/imbalance"},
+    {{"hardware", "hardware", "", "The GPU whose times are modelled.", kTime}, "/hardware"},
     {{"wall_ms", "wall time", "ms per frame",
       "The time of the simulator on the machine that ran it, which says nothing about hardware: the median over the "
       "frames. If each frame was run only once, this includes the time for modelling memory.",
@@ -340,6 +341,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
         if (const std::optional<double> mean = mean_of_frames(result, key)) record[key] = *mean;
     }
     add_room(report, result, record);
+    if (!summary.modelled_ms.empty()) record["hardware"] = hardware_label(report);
     for (const auto& [implementation, ms] : summary.modelled_ms)
       record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"scheduled", ms.scheduled}, {"sum", ms.sum}};
     Json energy;
