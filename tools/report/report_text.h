@@ -12,6 +12,9 @@ namespace beampipe {
 // A row of titles and one row per technique. `folder` is put in front of the pictures' paths.
 std::string table_text(const Report& report, const std::string& folder);
 
+// After an empty line, the measures that the first table has no room for; "" if nothing was compared.
+std::string measures_text(const Report& report);
+
 // Modelled milliseconds on each described hardware, side by side: a row per technique, and for each implementation one
 // stage after the other, all stages at once, and the busiest unit. Means over the frames; the unit is that of the
 // first. The reference has no row.

@@ -101,7 +101,7 @@ const std::vector<LadderRung> kLadder = {{1, 0.4}, {4, 0.1}, {16, 0.025}};  // R
 
 TEST(EquivalentMsaa, OfARungIsThatRung) {
   for (const LadderRung& rung : kLadder) {
-    EXPECT_EQ(equivalent_msaa(rung.rmse, kLadder), (EquivalentMsaa{static_cast<double>(rung.samples), false, false}));
+    EXPECT_EQ(equivalent_msaa(rung.error, kLadder), (EquivalentMsaa{static_cast<double>(rung.samples), false, false}));
   }
 }
 
@@ -127,7 +127,7 @@ TEST(EquivalentMsaa, ARungThatIsWorseThanOneBeforeIsSkipped) {
   EXPECT_NEAR(equivalent_msaa(0.1 / std::sqrt(2.0), ladder).samples, 16 * std::sqrt(2.0), 1e-9);
   // If the error rises at the end, a technique that is better than all rungs still gets the last rung.
   EXPECT_EQ(equivalent_msaa(0.05, {{1, 0.4}, {4, 0.1}, {8, 0.2}}), (EquivalentMsaa{8, true, false}));
-  EXPECT_EQ(best_rmse({{1, 0.4}, {4, 0.1}, {8, 0.2}}), 0.1);
+  EXPECT_EQ(best_error({{1, 0.4}, {4, 0.1}, {8, 0.2}}), 0.1);
 }
 
 TEST(EquivalentMsaa, WithRmseZero) {

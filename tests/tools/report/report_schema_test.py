@@ -55,7 +55,8 @@ class SchemaTest(unittest.TestCase):
                 "no_memory": ["run", fence, "--no-memory-model", "-t", "beam"],
                 "compare": ["compare", fence, "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2", "--hardware", "titan_v,rtx_4090", "-t",
                             "beam", "beam:order=sorted", "casav", "acaa:2", "msaa:1"],
-                "varying": ["compare", cls.room, "--inspect-worst", "1", "--ladder", "4,8", "--inspect", "8,4", "-t", "beam", "msaa:4"]}
+                "varying": ["compare", cls.room, "--inspect-worst", "1", "--ladder", "4,8", "--inspect", "8,4", "--metric", "flip", "-t",
+                        "beam", "msaa:4"]}
         cls.reports, cls.inspections = {}, {}
         for name, arguments in runs.items():
             cls.run_program(*arguments, "-o", str(folder / name))

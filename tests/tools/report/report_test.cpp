@@ -50,11 +50,9 @@ Report sample_report() {
 Report compared_report() {
   Report report = sample_report();
   report.msaa_ladder = {{1, 0.5}, {8, 0.125}};
-  report.results[0].error = ErrorStats{0.125, -0.25, 0.5, 1.0};
+  report.results[0].error = ErrorStats{0.125, -0.25, 0.5, 1.0, 0.75, 0.25, 2.0};
   report.results[0].equivalent_msaa = EquivalentMsaa{8, false, false};
-  change_frames(report.results[0], [](FrameReport& frame, std::size_t) {
-    frame.error = ErrorStats{0.125, -0.25, 0.5, 1.0};
-  });
+  change_frames(report.results[0], [&](FrameReport& frame, std::size_t) { frame.error = report.results[0].error; });
   return report;
 }
 
@@ -136,7 +134,8 @@ TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
 
 TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
   Report report = compared_report();
-  const Json error = {{"rmse", 0.125}, {"bias", -0.25}, {"p99", 0.5}, {"max", 1.0}};
+  const Json error = {{"rmse", 0.125}, {"bias", -0.25}, {"p99", 0.5},    {"max", 1.0},
+                      {"p999", 0.75},  {"mae", 0.25},   {"rel_mse", 2.0}};
   Json result = report_json(report)["results"][0];
   EXPECT_EQ(report_json(report)["msaa_ladder"].at(1), (Json{{"samples", 8}, {"rmse", 0.125}}));
   EXPECT_EQ(result["error"], error);
@@ -242,6 +241,22 @@ TEST(Table, HasErrorsAfterCompare) {
             "out/msaa_8/frame_0004.png\n"
             "beam                80             92  0.125000  -0.250000  0.50000  1.00000  ≥ 256  8.0  "
             "out/msaa_8/frame_0004.png\n");
+}
+
+TEST(Table, HasTheOtherMeasuresBelow) {
+  Report report = compared_report();
+  report.results[0].error->srgb_rmse = 0.01;  // 40 dB
+  report.results[0].error->ssim = 0.96875;
+  report.results[0].error->flip = report.results[0].error->hdr_flip = 0.125;
+  report.results.push_back(report.results[0]);
+  report.results[1].technique = "reference";
+  report.results[1].error = ErrorStats{.srgb_rmse = 0.0, .ssim = 1, .flip = 0.0, .hdr_flip = 0.0};
+  EXPECT_EQ(measures_text(report),
+            "\n"
+            "technique     p99.9       MAE  relMSE  sRGB RMSE   PSNR      SSIM      FLIP  HDR-FLIP\n"
+            "msaa:8     0.750000  0.250000       2   0.010000  40.00  0.968750  0.125000  0.125000\n"
+            "reference  0.000000  0.000000       0   0.000000         1.000000  0.000000  0.000000\n");
+  EXPECT_EQ(measures_text(sample_report()), "");
 }
 
 TEST(Table, MarksBoundsOfEquivalentRates) {
