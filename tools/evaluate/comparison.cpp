@@ -176,7 +176,7 @@ Image Comparison::read_image(const FrameReport& frame) const { return read_exr(o
 // The equivalent rate of technique i of the plan. That of the ladder's own techniques, msaa:N without options, is N.
 EquivalentMsaa Comparison::equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs) const {
   const Technique& technique = plan_.techniques[i];
-  if (!is_rung(technique)) return equivalent_msaa(error, rungs);
+  if (!is_rung(technique)) return limited_equivalent_msaa(error, rungs);
   return {static_cast<double>(technique.samples), false, false};
 }
 
@@ -191,7 +191,7 @@ void Comparison::report_parts(Report& report, Progress& progress) {
   report.visibility_ladder = split_->rungs(plan_, rmses, progress);
   for (std::size_t i = 0; i < rmses.size(); ++i)
     report.results[i].visibility_msaa = equivalent_of(i, rmses[i], report.visibility_ladder);
-  report.results.back().visibility_msaa = equivalent_msaa(0.0, report.visibility_ladder);
+  report.results.back().visibility_msaa = limited_equivalent_msaa(0.0, report.visibility_ladder);
 }
 
 // The errors of each technique over all frames. The means over pixels come from the frames' reports.
@@ -231,7 +231,7 @@ Report Comparison::report(Progress& progress) {
   if (orders_) orders_->report(results_.size(), reference_result_);
   reference_result_.flicker = pooled_flicker(reference_result_);
   reference_result_.error = no_error();
-  reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs.error);
+  reference_result_.equivalent_msaa = limited_equivalent_msaa(0.0, rungs.error);
 
   Report report = new_report(plan_, maker_);
   report.metric = options_.metric;

@@ -178,6 +178,39 @@ EquivalentMsaa equivalent_msaa(double error, const std::vector<LadderRung>& ladd
   return {static_cast<double>(ladder.back().samples), true, false};
 }
 
+std::optional<double> unevenness(const std::vector<LadderRung>& ladder) {
+  const auto is_exact = [](const LadderRung& rung) { return rung.error <= 0; };
+  if (ladder.size() < 5 || std::any_of(ladder.begin(), ladder.end(), is_exact)) return std::nullopt;
+  double variance = 0;
+  for (std::size_t i = 1; i + 1 < ladder.size(); ++i) {
+    const LadderRung &before = ladder[i - 1], &rung = ladder[i], &after = ladder[i + 1];
+    const double part = std::log(static_cast<double>(rung.samples) / before.samples) /
+                        std::log(static_cast<double>(after.samples) / before.samples);
+    const double off = std::log(rung.error / before.error) - part * std::log(after.error / before.error);
+    variance += off * off / (1 + part * part + (1 - part) * (1 - part));
+  }
+  return std::sqrt(variance / static_cast<double>(ladder.size() - 2));
+}
+
+bool converges(const std::vector<LadderRung>& ladder) {
+  const std::optional<double> deviation = unevenness(ladder);
+  if (!deviation) return true;
+  const double fall = std::log(ladder[ladder.size() - 3].error / ladder.back().error);
+  return fall > 2 * std::sqrt(2.0) * *deviation;
+}
+
+EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder) {
+  EquivalentMsaa emr = equivalent_msaa(error, ladder);
+  emr.does_not_converge = emr.is_lower_bound && !converges(ladder);
+  const std::optional<double> deviation = unevenness(ladder);
+  if (!deviation) return emr;
+  const EquivalentMsaa low = equivalent_msaa(error * std::exp(*deviation), ladder);
+  const EquivalentMsaa high = equivalent_msaa(error * std::exp(-*deviation), ladder);
+  if (!low.is_upper_bound && !emr.does_not_converge) emr.low = low.samples;
+  if (!high.is_lower_bound) emr.high = high.samples;
+  return emr;
+}
+
 double best_error(const std::vector<LadderRung>& ladder) {
   double best = std::numeric_limits<double>::infinity();
   for (const LadderRung& rung : ladder) best = std::min(best, rung.error);

@@ -85,6 +85,9 @@ struct EquivalentMsaa {
   double samples = 0;
   bool is_lower_bound = false;  // the error is below that of the last rung, whose samples these are
   bool is_upper_bound = false;  // the error is above that of the first rung, whose samples these are
+  // What limited_equivalent_msaa() adds. No rate: the error is below that of the last rung, which falls no more.
+  bool does_not_converge = false;
+  std::optional<double> low = {}, high = {};  // the rate if the error were larger or smaller by the unevenness
   bool operator==(const EquivalentMsaa&) const = default;
 };
 
@@ -93,6 +96,18 @@ struct EquivalentMsaa {
 // error 0 falls at once, so any error in between has the N of the rung before it.) Throws std::invalid_argument if the
 // ladder is empty or its sample counts do not rise.
 EquivalentMsaa equivalent_msaa(double error, const std::vector<LadderRung>& ladder);
+
+// How far the errors of the rungs lie off a smooth curve: the standard deviation of their logarithms. Each rung lies
+// off the line between its neighbours by independent deviations of all three. None if there are fewer than five rungs
+// or if an error is 0.
+std::optional<double> unevenness(const std::vector<LadderRung>& ladder);
+
+// Whether the error still falls at the end of the ladder: over its last three rungs by more than two standard
+// deviations of the difference between two rungs. A ladder without an unevenness is taken to converge.
+bool converges(const std::vector<LadderRung>& ladder);
+
+// The equivalent rate, and how far the ladder's unevenness leaves it open.
+EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder);
 
 // The lowest error on the ladder.
 double best_error(const std::vector<LadderRung>& ladder);

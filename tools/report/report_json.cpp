@@ -11,6 +11,11 @@
 namespace beampipe {
 namespace {
 
+template <class T>
+std::optional<T> if_it_converges(const EquivalentMsaa& emr, T value) {
+  return emr.does_not_converge ? std::nullopt : std::optional(value);
+}
+
 // An equivalent rate, if there is one, among the other keys of an object.
 template <class T, class Place>
 void add_rate(ObjectForm<T>& object, Place rate) {
@@ -22,13 +27,22 @@ void add_rate(ObjectForm<T>& object, Place rate) {
   };
   using Emr = EquivalentMsaa;
   object
-      .written("equivalent_msaa", part([](const Emr& emr) { return std::optional(emr.samples); }), form::amount(),
+      .written("equivalent_msaa", part([](const Emr& emr) { return if_it_converges(emr, emr.samples); }),
+               form::amount(),
                "Equivalent MSAA rate: the N at which msaa:N has the same error on the same frames, by the metric.")
-      .written("equivalent_msaa_is_lower_bound", part([](const Emr& emr) { return std::optional(emr.is_lower_bound); }),
-               form::boolean(), "The rate is at least that: the MSAA ladder ends before it.")
+      .written("equivalent_msaa_is_lower_bound",
+               part([](const Emr& emr) { return if_it_converges(emr, emr.is_lower_bound); }), form::boolean(),
+               "The rate is at least that: the MSAA ladder ends before it.")
       .written("equivalent_msaa_is_upper_bound",
                part([](const Emr& emr) { return emr.is_upper_bound ? std::optional(true) : std::nullopt; }),
-               form::boolean(), "The rate is at most that: the first rung of the ladder is better.");
+               form::boolean(), "The rate is at most that: the first rung of the ladder is better.")
+      .written("equivalent_msaa_low", part([](const Emr& emr) { return emr.low; }), form::amount(),
+               "The rate if the error were larger by the unevenness of the MSAA ladder.")
+      .written("equivalent_msaa_high", part([](const Emr& emr) { return emr.high; }), form::amount(),
+               "The rate if the error were smaller by that.")
+      .written("equivalent_msaa_does_not_converge",
+               part([](const Emr& emr) { return emr.does_not_converge ? std::optional(true) : std::nullopt; }),
+               form::boolean(), "There is no rate: the error is below that of the last rung, which falls no more.");
 }
 
 Form<Surface> surface_form() {

@@ -12,6 +12,12 @@ namespace {
 
 const std::set<std::string> kInFirstTable = {"rmse", "bias", "p99", "max"};
 
+// What the unevenness of the ladder leaves open.
+std::string range_text(const EquivalentMsaa& emr) {
+  const auto text = [](const std::optional<double>& rate) { return rate ? emr_text({*rate, false, false}) : ""; };
+  return emr.low || emr.high ? text(emr.low) + ".." + text(emr.high) : "";
+}
+
 std::string number_text(std::string_view key, double value) {
   return format(key == "psnr" ? "%.2f" : key == "rel_mse" ? "%.3g" : "%.6f", value);
 }
@@ -40,6 +46,7 @@ std::size_t width_of(const std::string& text) {
 }  // namespace
 
 std::string emr_text(const EquivalentMsaa& emr) {
+  if (emr.does_not_converge) return "does not converge";
   const std::string samples = emr.samples < 100 ? format("%.3g", emr.samples) : format("%.0f", emr.samples);
   return (emr.is_lower_bound ? "≥ " : emr.is_upper_bound ? "< " : "") + samples;
 }
@@ -87,8 +94,8 @@ std::string measures_text(const Report& report) {
   std::vector<std::vector<std::string>> rows(1);
   for (const TechniqueReport& result : report.results) {
     if (!result.error) return "";
-    rows.push_back({result.technique});
-    rows[0] = {"technique"};
+    rows.push_back({result.technique, result.equivalent_msaa ? range_text(*result.equivalent_msaa) : ""});
+    rows[0] = {"technique", "EMR within"};
     for (const Measure& measure : measures()) {
       if (kInFirstTable.contains(measure.key)) continue;
       const std::optional<double> value = measure.value(*result.error);

@@ -47,9 +47,15 @@ const std::vector<Source> kTechniqueColumns = {
      "/equivalent_msaa"},
     {{"emr_bound", "EMR is", "",
       "Whether the EMR is exact or a bound: at least that of the best rung of the MSAA ladder, or at most that of the "
-      "worst.",
+      "worst. It does not converge if the last rungs are worse and fall no more.",
       kAccuracy},
      "/emr_bound"},
+    {{"emr_low", "EMR from", "samples per pixel",
+      "EMR if the error were larger by the unevenness of the MSAA ladder: how far its errors lie off a smooth curve.",
+      kAccuracy},
+     "/equivalent_msaa_low"},
+    {{"emr_high", "EMR to", "samples per pixel", "EMR if the error were smaller by that.", kAccuracy},
+     "/equivalent_msaa_high"},
     {{"visibility_rmse", "visibility", "linear light, 0..1",
       "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a "
       "triangle "
@@ -270,6 +276,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
+    if (result.value("equivalent_msaa_does_not_converge", false)) record["emr_bound"] = "does not converge";
     if (summary.dram_bytes > 0) {  // otherwise no memory was modelled
       for (const char* key : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
         if (const std::optional<double> mean = mean_of_frames(result, key)) record[key] = *mean;

@@ -150,6 +150,14 @@ TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
   result = report_json(report)["results"][0];
   EXPECT_EQ(result["equivalent_msaa_is_lower_bound"], false);
   EXPECT_EQ(result["equivalent_msaa_is_upper_bound"], true);
+  report.results[0].equivalent_msaa = {.samples = 8, .low = 7, .high = 9};
+  result = report_json(report)["results"][0];
+  EXPECT_EQ(result["equivalent_msaa_low"], 7.0);
+  EXPECT_EQ(result["equivalent_msaa_high"], 9.0);
+  report.results[0].equivalent_msaa = {.samples = 8, .is_lower_bound = true, .does_not_converge = true};
+  result = report_json(report)["results"][0];
+  EXPECT_FALSE(result.contains("equivalent_msaa")) << "there is no number";
+  EXPECT_EQ(result["equivalent_msaa_does_not_converge"], true);
 }
 
 TEST(ReportJson, HasThePartsOfErrorsWhereSurfacesVary) {
@@ -247,15 +255,17 @@ TEST(Table, HasTheOtherMeasuresBelow) {
   Report report = compared_report();
   report.results[0].error->srgb_rmse = 0.01;  // 40 dB
   report.results[0].error->ssim = 0.96875;
+  report.results[0].equivalent_msaa = {.samples = 8, .low = 7.25, .high = 9.5};
   report.results[0].error->flip = report.results[0].error->hdr_flip = 0.125;
   report.results.push_back(report.results[0]);
   report.results[1].technique = "reference";
+  report.results[1].equivalent_msaa = {.samples = 1024, .is_lower_bound = true, .low = 256};
   report.results[1].error = ErrorStats{.srgb_rmse = 0.0, .ssim = 1, .flip = 0.0, .hdr_flip = 0.0};
   EXPECT_EQ(measures_text(report),
             "\n"
-            "technique     p99.9       MAE  relMSE  sRGB RMSE   PSNR      SSIM      FLIP  HDR-FLIP\n"
-            "msaa:8     0.750000  0.250000       2   0.010000  40.00  0.968750  0.125000  0.125000\n"
-            "reference  0.000000  0.000000       0   0.000000         1.000000  0.000000  0.000000\n");
+            "technique  EMR within     p99.9       MAE  relMSE  sRGB RMSE   PSNR      SSIM      FLIP  HDR-FLIP\n"
+            "msaa:8      7.25..9.5  0.750000  0.250000       2   0.010000  40.00  0.968750  0.125000  0.125000\n"
+            "reference       256..  0.000000  0.000000       0   0.000000         1.000000  0.000000  0.000000\n");
   EXPECT_EQ(measures_text(sample_report()), "");
 }
 
@@ -263,6 +273,7 @@ TEST(Table, MarksBoundsOfEquivalentRates) {
   EXPECT_EQ(emr_text({36.24, false, false}), "36.2");
   EXPECT_EQ(emr_text({1024, true, false}), "≥ 1024");
   EXPECT_EQ(emr_text({1, false, true}), "< 1");
+  EXPECT_EQ(emr_text({1024, true, false, true}), "does not converge");
 }
 
 }  // namespace beampipe::report_test
