@@ -85,7 +85,9 @@ TEST(Filtered, MovesSumsAndRepeatsTheEdge) {
 
 TEST(Measures, OfEqualPicturesSayThatNothingIsWrong) {
   const Image image = drawing(false);
-  EXPECT_EQ(measure_all(image, image), no_error());
+  Image clear = image;
+  for (std::size_t i = 3; i < clear.rgba.size(); i += 4) clear.rgba[i] = 0.0f;  // alpha does not count
+  EXPECT_EQ(measure_all(clear, image), no_error());
   EXPECT_EQ(measures()[8].key, std::string("psnr"));
   EXPECT_EQ(measures()[8].value(no_error()), std::nullopt);
 }
@@ -184,17 +186,17 @@ TEST(Flip, ExposuresOfDarkPictures) {
 }
 
 TEST(Maps, DoNotDependOnBands) {
-  // Both halves of a tall picture have all that they see of each other: rows far from the middle are the same alone.
+  // Without its first 32 rows, a tall picture has other bands. Rows that see nothing of these 32 stay the same.
   Image image = flat_image(17, 200, 0.5f), reference = image;
   for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<float>(i * 37 % 101) / 101;
-  const auto top = [](const Image& tall) {
-    return Image{tall.width, 100, {tall.rgba.begin(), tall.rgba.begin() + 4 * 17 * 100}};
+  const auto lower = [](const Image& tall) {
+    return Image{tall.width, 168, {tall.rgba.begin() + 4 * 17 * 32, tall.rgba.end()}};
   };
   for (const std::string& name : map_names()) {
     const auto map = find_metric(name).map;
     const std::vector<float> all = map(image, reference, kPixelsPerDegree);
-    const std::vector<float> part = map(top(image), top(reference), kPixelsPerDegree);
-    EXPECT_TRUE(std::equal(part.begin(), part.begin() + 17 * 90, all.begin())) << name;
+    const std::vector<float> part = map(lower(image), lower(reference), kPixelsPerDegree);
+    EXPECT_TRUE(std::equal(part.begin() + 17 * 12, part.end(), all.begin() + 17 * 44)) << name;
   }
 }
 
