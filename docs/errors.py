@@ -23,7 +23,9 @@ def name_of(spec):
 def emr(result):
     bound = ("≥ " if result.get("equivalent_msaa_is_lower_bound") else
              "< " if result.get("equivalent_msaa_is_upper_bound") else "")
-    rate = result["equivalent_msaa"]
+    rate = result.get("equivalent_msaa")
+    if rate is None:
+        return "does not converge"
     return bound + (f"{rate:.0f}" if rate >= 100 else f"{rate:.3g}")
 
 

@@ -73,7 +73,7 @@ def results_of(folder):
 def emr_of(result):
     if "equivalent_msaa" not in result:
         return ""
-    bound = ("≥ " if result["equivalent_msaa_is_lower_bound"] else
+    bound = ("≥ " if result.get("equivalent_msaa_is_lower_bound") else
              "< " if result.get("equivalent_msaa_is_upper_bound") else "")
     return f"{bound}{result['equivalent_msaa']:.3g}"
 

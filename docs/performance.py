@@ -60,6 +60,8 @@ def equivalent_rate(program, trace):
 
     with changed_trace(trace, make_small) as small, tempfile.TemporaryDirectory() as folder:
         result = measure.results(program, "compare", small, RATIOS[:1], folder, "--no-memory-model")[RATIOS[0]]
+        if "equivalent_msaa" not in result:
+            return "does not converge"
         rate = f"{result['equivalent_msaa']:.0f}"
         return "≥ " + rate if result.get("equivalent_msaa_is_lower_bound") else rate
 

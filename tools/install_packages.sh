@@ -22,6 +22,7 @@ test=(
   gnuplot-nox                       # draws the files of `beampipe plot` and the plots of `beampipe report`
   chromium chromium-driver python3  # tests of the report page
   python3-jsonschema                # holds results to their JSON Schemas
+  python3-skimage                   # another SSIM
   libgtest-dev libbenchmark-dev
   clang libclang-rt-dev             # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones

@@ -5,6 +5,7 @@
 
 #include "pipeline/spec.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/metric_options.h"
 #include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/run_report.h"
@@ -18,7 +19,8 @@ namespace {
 constexpr const char* kCompareFooter =
     R"(The reference is the technique `reference`, with 4096 samples per pixel; its pictures are written too. Errors are
 differences of linear RGB values from it: RMSE (root mean square), bias (mean), p99 (99th percentile of the absolute
-values) and max. EMR, the equivalent MSAA rate, is the N at which msaa:N has the same RMSE on the same frames.
+values) and max. `beampipe diff --help` explains the other measures. EMR, the equivalent MSAA rate, is the N at which
+msaa:N has the same RMSE on the same frames, or the same error by --metric.
 With materials, errors have two parts: visibility (how much of a pixel each surface covers; it has its own EMR) and
 shading (the colour of each surface there). All pictures are then rendered twice.
 
@@ -37,6 +39,7 @@ void tell_unexplained(const std::vector<std::string>& specs) {
 
 void compare(const RunArguments& arguments, const CompareOptions& options, const RecordedPixels& pixels,
              InterruptGate& gate) {
+  check_pixels_per_degree(options.pixels_per_degree);
   RunPlan plan = make_plan(arguments);
   tell_notes(plan.notes);
   std::vector<std::string> unexplained;
@@ -75,6 +78,12 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
           "MSAA rates to measure, between which equivalent rates are interpolated (default: 1,2,4,...,256, and 512 and "
           "1024 if these are not enough)")
       .list("N,N,...");
+  command
+      .add("--metric", options->metric,
+           "the measure by which equivalent rates are found (that of visibility is always found by RMSE)")
+      .one_of(metric_names())
+      .shows_default();
+  add_pixels_per_degree(command, options->pixels_per_degree);
   command.add_flag(
       "--causes", options->causes,
       "split each pixel's visibility error by cause, as layers of the counters and as a table (beam in every "

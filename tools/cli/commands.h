@@ -17,7 +17,7 @@ void add_model_command(CommandLine& line);
 void add_sweep_command(CommandLine& line, InterruptGate& gate);
 void add_stress_command(CommandLine& line, InterruptGate& gate);
 void add_inspect_command(CommandLine& line, InterruptGate& gate);
-void add_diff_command(CommandLine& line);
+void add_diff_command(CommandLine& line, InterruptGate& gate);
 void add_info_command(CommandLine& line);
 void add_check_capture_command(CommandLine& line, InterruptGate& gate);
 void add_export_soup_command(CommandLine& line, InterruptGate& gate);

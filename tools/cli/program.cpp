@@ -64,7 +64,7 @@ int run(int argc, char** argv, InterruptGate& gate) {
   add_sweep_command(line, gate);
   add_stress_command(line, gate);
   add_inspect_command(line, gate);
-  add_diff_command(line);
+  add_diff_command(line, gate);
   add_info_command(line);
   add_check_capture_command(line, gate);
   add_export_soup_command(line, gate);

@@ -29,8 +29,8 @@ void finish_report(OutputFolder& output, const Report& report) {
   output.write("report.json", [&](const OutputFolder::WriteBytes& write) { write_json(report, write); });
   output.keep();
   FrameRecords(output, report.made_by).remove();
-  std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)
-            << (report.memory.modelled ? times_text(report) : "")
+  std::cout << table_text(report, output.path().string()) << measures_text(report) << causes_text(report)
+            << orders_text(report) << (report.memory.modelled ? times_text(report) : "")
             << "report: " << (output.path() / "report.json").string() << "\n";
 }
 

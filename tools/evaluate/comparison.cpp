@@ -14,7 +14,9 @@ Json made_by(const CompareOptions& options, const RunPlan& plan) {
                              .plan = plan,
                              .ladder = std::vector<std::uint64_t>(options.ladder.begin(), options.ladder.end()),
                              .causes = options.causes,
-                             .orders = options.orders});
+                             .orders = options.orders,
+                             .metric = options.metric,
+                             .pixels_per_degree = options.pixels_per_degree});
 }
 
 // Pooled over the frames that follow another. None if there is only one frame.
@@ -28,6 +30,11 @@ std::optional<double> pooled_flicker(const TechniqueReport& result) {
   return frames > 0 ? std::optional(std::sqrt(squares / frames)) : std::nullopt;
 }
 
+bool has_all_measures(const ErrorStats& stats) {
+  return std::ranges::all_of(measures(),
+                             [&](const Measure& measure) { return !measure.stored || stats.*measure.stored; });
+}
+
 }  // namespace
 
 Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder& output)
@@ -36,7 +43,8 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
       plan_(std::move(plan)),
       maker_(made_by(options, plan_)),
       records_(output, maker_),
-      ladder_(options.ladder) {
+      metric_{find_metric(options.metric), options.pixels_per_degree},
+      ladder_(options.ladder, SurfaceColors::by_place, metric_) {
   std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == kReferenceSpec; });
   std::vector<Technique> written = plan_.techniques;
   written.push_back(reference_);
@@ -56,7 +64,9 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
 std::size_t Comparison::resume() {
   std::vector<std::string> specs = specs_of(plan_.techniques);
   specs.push_back(reference_.spec);
-  const auto fits = [&](const FrameReport& report) { return report.parts.has_value() == split_.has_value(); };
+  const auto fits = [&](const FrameReport& report) {
+    return report.parts.has_value() == split_.has_value() && report.error && has_all_measures(*report.error);
+  };
   return records_.read(plan_.frames, specs, sums(), [&](const FrameRecord& record) {
     if (!std::all_of(record.reports.begin(), record.reports.end(), fits)) return false;
     recall_frame(record);
@@ -87,7 +97,7 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
   FrameReport reference = write_frame(output_, plan_, maker_, {reference_.spec, frame, truth});
   reference.wall_ms = reference_time;
-  reference.error = ErrorStats{};
+  reference.error = no_error();
   if (split_) {
     reference.parts = ErrorParts{};
     split_->start_frame(plan_, frame, progress);
@@ -98,7 +108,8 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
       render_frame(plan_, frame, progress, histories_, [&](std::size_t i, FrameResult&& result) {
         const std::optional<ErrorParts> parts = explain(i, result, truth.image, frame, progress);
         FrameReport& report = record.reports.emplace_back(
-            write_frame(output_, plan_, maker_, {plan_.techniques[i].spec, frame, result, &truth.image}));
+            write_frame(output_, plan_, maker_,
+                        {plan_.techniques[i].spec, frame, result, &truth.image, metric_.pixels_per_degree}));
         report.parts = parts;
         errors_[i].add(result.image, truth.image);
         std::vector<float> errors = signed_errors(result.image, truth.image);
@@ -163,9 +174,9 @@ Json Comparison::sums() const {
 Image Comparison::read_image(const FrameReport& frame) const { return read_exr(output_.path() / frame.image); }
 
 // The equivalent rate of technique i of the plan. That of the ladder's own techniques, msaa:N without options, is N.
-EquivalentMsaa Comparison::equivalent_of(std::size_t i, double rmse, const std::vector<LadderRung>& rungs) const {
+EquivalentMsaa Comparison::equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs) const {
   const Technique& technique = plan_.techniques[i];
-  if (!is_rung(technique)) return equivalent_msaa(rmse, rungs);
+  if (!is_rung(technique)) return limited_equivalent_msaa(error, rungs);
   return {static_cast<double>(technique.samples), false, false};
 }
 
@@ -180,33 +191,52 @@ void Comparison::report_parts(Report& report, Progress& progress) {
   report.visibility_ladder = split_->rungs(plan_, rmses, progress);
   for (std::size_t i = 0; i < rmses.size(); ++i)
     report.results[i].visibility_msaa = equivalent_of(i, rmses[i], report.visibility_ladder);
-  report.results.back().visibility_msaa = equivalent_msaa(0.0, report.visibility_ladder);
+  report.results.back().visibility_msaa = limited_equivalent_msaa(0.0, report.visibility_ladder);
+}
+
+// The errors of each technique over all frames. The means over pixels come from the frames' reports.
+void Comparison::pool_errors() {
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    ErrorStats& stats = results_[i].error.emplace(errors_[i].stats());
+    double pixels = 0;
+    for (const FrameReport& frame : results_[i].frames) {
+      const auto frame_pixels = static_cast<double>(frame.pixels);
+      pixels += frame_pixels;
+      for (const Measure& measure : measures())
+        if (measure.stored)
+          stats.*measure.stored = (stats.*measure.stored).value_or(0) +
+                                  pooled_part(measure, *(*frame.error.*measure.stored)) * frame_pixels;
+    }
+    for (const Measure& measure : measures())
+      if (measure.stored) stats.*measure.stored = pooled(measure, *(stats.*measure.stored) / pixels);
+  }
 }
 
 Report Comparison::report(Progress& progress) {
-  std::vector<double> rmses;
-  for (std::size_t i = 0; i < results_.size(); ++i) {
-    results_[i].error = errors_[i].stats();
-    rmses.push_back(results_[i].error->rmse);
-  }
+  pool_errors();
+  std::vector<MetricErrors> errors;
+  for (const TechniqueReport& result : results_)
+    errors.push_back({result.error->rmse, metric_.measure.error(*result.error)});
   const auto read_reference = [&](std::size_t frame) {  // frames of a plan follow each other
     return read_image(reference_result_.frames[frame - plan_.frames.front()]);
   };
-  const std::vector<LadderRung> rungs = ladder_.rungs(plan_, rmses, read_reference, progress);
+  const MsaaLadder::Rungs rungs = ladder_.rungs(plan_, errors, read_reference, progress);
   for (std::size_t i = 0; i < results_.size(); ++i) {
     TechniqueReport& result = results_[i];
-    result.equivalent_msaa = equivalent_of(i, rmses[i], rungs);
+    result.equivalent_msaa = equivalent_of(i, errors[i].error, rungs.error);
     result.causes = causes_[i].shares();
     result.flicker = pooled_flicker(result);
     if (orders_) orders_->report(i, result);
   }
   if (orders_) orders_->report(results_.size(), reference_result_);
   reference_result_.flicker = pooled_flicker(reference_result_);
-  reference_result_.error = ErrorStats{};
-  reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs);
+  reference_result_.error = no_error();
+  reference_result_.equivalent_msaa = limited_equivalent_msaa(0.0, rungs.error);
 
   Report report = new_report(plan_, maker_);
-  report.msaa_ladder = rungs;
+  report.metric = options_.metric;
+  report.msaa_ladder = rungs.rmse;
+  if (options_.metric != "rmse") report.metric_ladder = rungs.error;
   report.results = results_;
   report.results.push_back(reference_result_);
   if (split_) report_parts(report, progress);

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/evaluate/diagnosis.h"
 #include "tools/evaluate/error_split.h"
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/progress.h"
@@ -22,6 +24,8 @@ namespace beampipe {
 struct CompareOptions {
   std::vector<std::uint32_t> ladder;  // empty: the default ladder
   bool causes = false, orders = false;
+  std::string metric = "rmse";  // what equivalent rates compare: one of metric_names()
+  double pixels_per_degree = kPixelsPerDegree;
 };
 
 class Comparison {
@@ -53,7 +57,8 @@ class Comparison {
   void recall_frame(const FrameRecord& record);
   Json sums() const;
   Image read_image(const FrameReport& frame) const;
-  EquivalentMsaa equivalent_of(std::size_t i, double rmse, const std::vector<LadderRung>& rungs) const;
+  void pool_errors();
+  EquivalentMsaa equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs) const;
   void report_parts(Report& report, Progress& progress);
   Report report(Progress& progress);
 
@@ -63,6 +68,7 @@ class Comparison {
   Json maker_;
   FrameRecords records_;
   Technique reference_ = parse_technique(kReferenceSpec);
+  Metric metric_;
   MsaaLadder ladder_;
   TechniqueReport reference_result_;
   // Each has one entry per technique of the plan.

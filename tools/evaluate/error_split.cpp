@@ -84,7 +84,9 @@ std::vector<LadderRung> ErrorSplit::rungs(const RunPlan& plan, const std::vector
     if (reference_.rgba.empty() || frame != frame_) start_frame(plan, frame, progress);
     return reference_;
   };
-  return ladder_.rungs(plan, rmses, read_reference, progress);
+  std::vector<MetricErrors> errors;
+  for (const double rmse : rmses) errors.push_back({rmse, rmse});
+  return ladder_.rungs(plan, errors, read_reference, progress).rmse;
 }
 
 }  // namespace beampipe

@@ -9,6 +9,7 @@
 
 #include "stages/cost/counters.h"
 #include "tools/evaluate/energy.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/saved_work.h"
 
@@ -192,7 +193,7 @@ Form<FrameOf> make_frame_form() {
       .written("picture", member(&Frame::picture), form::text("a file"), "The picture as PNG.")
       .written("counters", filled(&Frame::counters), form::text("a file"),
                "The counters of each pixel, as channels of an EXR.")
-      .written("error", member(&Frame::error), error_form(), "Differences from the reference, in linear light.")
+      .written("error", member(&Frame::error), error_form(), "Differences from the reference.")
       .written("visibility", part(&ErrorParts::visibility), rmse_form(),
                "The error in visibility, where surfaces vary.")
       .written("shading", part(&ErrorParts::shading), rmse_form(), "The error in shading, where surfaces vary.")
@@ -228,11 +229,26 @@ const Form<FrameOf>& frame_form() {
 }  // namespace
 
 Form<ErrorStats> error_form() {
-  return ObjectForm<ErrorStats>()
-      .written("rmse", &ErrorStats::rmse, form::amount(), "Root mean square over R, G and B of all pixels.")
-      .written("bias", &ErrorStats::bias, form::number(), "Mean of the signed error.")
-      .written("p99", &ErrorStats::p99, form::amount(), "The absolute error that 99 % of all values do not exceed.")
-      .written("max", &ErrorStats::max, form::amount(), "The largest absolute error.");
+  ObjectForm<ErrorStats> form;
+  for (const Measure& measure : measures()) {
+    const Form<double> number = measure.may_be_negative ? form::number() : form::amount();
+    form.written(measure.key, measure.value, number, measure.meaning);
+  }
+  return form;
+}
+
+ErrorStats error_of(const Json& json) {
+  const auto number = [&](const char* key) { return json.at(key).get<double>(); };
+  ErrorStats stats{.rmse = number("rmse"),
+                   .bias = number("bias"),
+                   .p99 = number("p99"),
+                   .max = number("max"),
+                   .p999 = number("p999"),
+                   .mae = number("mae"),
+                   .rel_mse = number("rel_mse")};
+  for (const Measure& measure : measures())
+    if (measure.stored && json.contains(measure.key)) stats.*measure.stored = number(measure.key);
+  return stats;
 }
 
 Form<double> rmse_form() {
@@ -275,9 +291,7 @@ FrameReport frame_of(const Json& json) {
   frame.image = json.at("image").get<std::string>();
   frame.picture = json.at("picture").get<std::string>();
   frame.counters = json.value("counters", std::string());
-  if (const Json* error = json.find("error"))
-    frame.error = {error->at("rmse").get<double>(), error->at("bias").get<double>(), error->at("p99").get<double>(),
-                   error->at("max").get<double>()};
+  if (const Json* error = json.find("error")) frame.error = error_of(*error);
   if (const Json* visibility = json.find("visibility"))
     frame.parts = {visibility->at("rmse").get<double>(), json.at("shading").at("rmse").get<double>()};
   if (const Json* flicker = json.find("flicker")) frame.flicker = flicker->get<double>();

@@ -11,8 +11,12 @@
 
 namespace beampipe {
 
-// {"rmse": ..., "bias": ...}, and {"rmse": ...}.
+// {"rmse": ..., "bias": ...}: measures() that have a value; and back. error_of() throws JsonError if a number is
+// missing.
 Form<ErrorStats> error_form();
+ErrorStats error_of(const Json& json);
+
+// {"rmse": ...}
 Form<double> rmse_form();
 
 // The JSON Schema of a frame in report.json.

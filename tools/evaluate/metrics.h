@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pipeline/technique.h"
@@ -14,13 +15,27 @@ struct PicturePair {
 };
 
 // Statistics of the differences image - reference, over R, G and B of all pixels, in linear light. Alpha is ignored.
+// `measures()` (measures.h) describes them.
 struct ErrorStats {
-  double rmse = 0;  // root mean square
-  double bias = 0;  // mean of the signed differences
-  double p99 = 0;   // 99th percentile of the n absolute values: the one at rank ceil(0.99 n), counted from 1
-  double max = 0;   // largest absolute value
+  double rmse = 0;     // root mean square
+  double bias = 0;     // mean of the signed differences
+  double p99 = 0;      // 99th percentile of the n absolute values: the one at rank ceil(0.99 n), counted from 1
+  double max = 0;      // largest absolute value
+  double p999 = 0;     // 99.9th percentile: at rank ceil(0.999 n)
+  double mae = 0;      // mean of the absolute values
+  double rel_mse = 0;  // mean of (image - reference)^2 / (reference^2 + kRelativeEpsilon)
+  // What an eye may see, which ErrorAccumulator does not measure. The root mean square of differences of values that
+  // are clamped to 0..1 and encoded in sRGB; means over pixels of SSIM (ssim.h), LDR-FLIP and HDR-FLIP (flip.h).
+  std::optional<double> srgb_rmse = {}, ssim = {}, flip = {}, hdr_flip = {};
   bool operator==(const ErrorStats&) const = default;
 };
+
+// As in F. Rousselle, C. Knaus, M. Zwicker: Adaptive Sampling and Reconstruction using Greedy Error Minimization. ACM
+// Transactions on Graphics 30 (6), 2011.
+inline constexpr double kRelativeEpsilon = 0.01;
+
+// Throws std::invalid_argument if the sizes differ.
+void require_same_size(const Image& image, const Image& reference);
 
 // Pools the errors of several frames as if they were one picture. It adds up doubles row by row, in a fixed order, so
 // that the result is the same on every machine. It stores about 1 % of the values, which is what p99 needs.
@@ -38,12 +53,15 @@ class ErrorAccumulator {
 
  private:
   std::uint64_t expected_ = 0, count_ = 0;  // values, three per pixel
-  double sum_ = 0, sum_of_squares_ = 0;
+  double sum_ = 0, sum_of_squares_ = 0, sum_of_absolutes_ = 0, sum_of_relatives_ = 0;
   std::vector<double> largest_;  // the floor(expected / 100) + 1 largest absolute errors so far, unordered
 };
 
-// The errors of one picture. Throws as ErrorAccumulator::add does.
+// The errors of one picture, as ErrorAccumulator finds them. Throws as its add() does.
 ErrorStats measure_error(const Image& image, const Image& reference);
+
+// srgb_rmse. Throws std::invalid_argument if the sizes differ.
+double encoded_rmse(const Image& image, const Image& reference);
 
 // For each pixel, the root mean square of the errors in its three channels. Throws std::invalid_argument if the sizes
 // differ.
@@ -56,10 +74,10 @@ std::vector<float> signed_errors(const Image& image, const Image& reference);
 // change that the reference shows too is no flicker. Throws std::invalid_argument if the numbers of values differ.
 double flicker(const std::vector<float>& previous_errors, const std::vector<float>& errors);
 
-// A rung of the MSAA ladder: the measured RMSE of msaa:samples.
+// A rung of the MSAA ladder: the measured error of msaa:samples, such as its RMSE. `measures.h` has others.
 struct LadderRung {
   std::uint32_t samples = 0;
-  double rmse = 0;
+  double error = 0;
 };
 
 // An equivalent MSAA rate (EMR).
@@ -67,16 +85,31 @@ struct EquivalentMsaa {
   double samples = 0;
   bool is_lower_bound = false;  // the error is below that of the last rung, whose samples these are
   bool is_upper_bound = false;  // the error is above that of the first rung, whose samples these are
+  // What limited_equivalent_msaa() adds. No rate: the error is below that of the last rung, which falls no more.
+  bool does_not_converge = false;
+  std::optional<double> low = {}, high = {};  // the rate if the error were larger or smaller by the unevenness
   bool operator==(const EquivalentMsaa&) const = default;
 };
 
-// The smallest N at which MSAA has this RMSE. The RMSE of MSAA as a function of N is the running minimum over the
-// rungs, so that it never rises, with straight lines between the rungs in log N and log RMSE. (A line to a rung with
-// RMSE 0 falls at once, so any RMSE in between has the N of the rung before it.) Throws std::invalid_argument if the
+// The smallest N at which MSAA has this error. The error of MSAA as a function of N is the running minimum over the
+// rungs, so that it never rises, with straight lines between the rungs in log N and log error. (A line to a rung with
+// error 0 falls at once, so any error in between has the N of the rung before it.) Throws std::invalid_argument if the
 // ladder is empty or its sample counts do not rise.
-EquivalentMsaa equivalent_msaa(double rmse, const std::vector<LadderRung>& ladder);
+EquivalentMsaa equivalent_msaa(double error, const std::vector<LadderRung>& ladder);
 
-// The lowest RMSE on the ladder.
-double best_rmse(const std::vector<LadderRung>& ladder);
+// How far the errors of the rungs lie off a smooth curve: the standard deviation of their logarithms. Each rung lies
+// off the line between its neighbours by independent deviations of all three. None if there are fewer than five rungs
+// or if an error is 0.
+std::optional<double> unevenness(const std::vector<LadderRung>& ladder);
+
+// Whether the error still falls at the end of the ladder: over its last three rungs by more than two standard
+// deviations of the difference between two rungs. A ladder without an unevenness is taken to converge.
+bool converges(const std::vector<LadderRung>& ladder);
+
+// The equivalent rate, and how far the ladder's unevenness leaves it open.
+EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder);
+
+// The lowest error on the ladder.
+double best_error(const std::vector<LadderRung>& ladder);
 
 }  // namespace beampipe

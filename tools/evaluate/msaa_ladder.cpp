@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/bins/threads.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/render.h"
 
@@ -27,63 +28,73 @@ bool is_rung(const Technique& technique) {
 
 MsaaLadder::Rung::Rung(std::uint32_t samples) : technique(parse_technique(msaa_spec(samples))) {}
 
-void MsaaLadder::Rung::add(const RunPlan& plan, std::size_t frame, const Image& reference, SurfaceColors colors,
-                           Progress& progress) {
-  if (index_of(technique.spec, plan) < plan.techniques.size()) return;
-  const Image image = render_picture(technique, plan, frame, progress, colors);
-  const double rmse = measure_named_error(technique.spec, frame, image, reference).rmse;
-  const double frame_pixels = static_cast<double>(reference.width) * reference.height;
-  squares += rmse * rmse * frame_pixels;
-  pixels += frame_pixels;
-}
-
-LadderRung MsaaLadder::Rung::measured(const RunPlan& plan, const std::vector<double>& rmses) const {
-  const std::size_t i = index_of(technique.spec, plan);
-  return {technique.samples, i < rmses.size() ? rmses[i] : std::sqrt(squares / pixels)};
-}
-
-MsaaLadder::MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors)
-    : may_grow_(samples.empty()), colors_(colors) {
+MsaaLadder::MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors, const Metric& metric)
+    : may_grow_(samples.empty()), colors_(colors), metric_(metric) {
   if (samples.empty()) samples = kDefaultSamples;
   std::sort(samples.begin(), samples.end());
   samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
   for (const std::uint32_t count : samples) rungs_.emplace_back(count);
 }
 
-void MsaaLadder::add(const RunPlan& plan, std::size_t frame, const Image& reference, Progress& progress) {
-  for (Rung& rung : rungs_) rung.add(plan, frame, reference, colors_, progress);
+void MsaaLadder::add(Rung& rung, const RunPlan& plan, std::size_t frame, const Image& reference,
+                     Progress& progress) const {
+  if (index_of(rung.technique.spec, plan) < plan.techniques.size()) return;
+  const Image image = render_picture(rung.technique, plan, frame, progress, colors_);
+  ErrorStats stats = measure_named_error(rung.technique.spec, frame, image, reference);
+  const Measure& measure = metric_.measure;
+  if (measure.measure)
+    stats.*measure.stored =
+        on_threads(plan.options.threads, [&] { return measure.measure(image, reference, metric_.pixels_per_degree); });
+  const double frame_pixels = static_cast<double>(reference.width) * reference.height;
+  rung.squares += stats.rmse * stats.rmse * frame_pixels;
+  rung.errors += pooled_part(measure, measure.error(stats)) * frame_pixels;
+  rung.pixels += frame_pixels;
 }
 
-std::vector<LadderRung> MsaaLadder::rungs(const RunPlan& plan, const std::vector<double>& rmses,
-                                          const std::function<Image(std::size_t frame)>& read_reference,
-                                          Progress& progress) {
-  std::vector<LadderRung> measured;
-  for (const Rung& rung : rungs_) measured.push_back(rung.measured(plan, rmses));
+void MsaaLadder::measure(const Rung& rung, const RunPlan& plan, const std::vector<MetricErrors>& errors,
+                         Rungs& measured) const {
+  const std::size_t i = index_of(rung.technique.spec, plan);
+  const MetricErrors of_rung = i < errors.size() ? errors[i]
+                                                 : MetricErrors{std::sqrt(rung.squares / rung.pixels),
+                                                                pooled(metric_.measure, rung.errors / rung.pixels)};
+  measured.rmse.push_back({rung.technique.samples, of_rung.rmse});
+  measured.error.push_back({rung.technique.samples, of_rung.error});
+}
+
+void MsaaLadder::add(const RunPlan& plan, std::size_t frame, const Image& reference, Progress& progress) {
+  for (Rung& rung : rungs_) add(rung, plan, frame, reference, progress);
+}
+
+MsaaLadder::Rungs MsaaLadder::rungs(const RunPlan& plan, const std::vector<MetricErrors>& errors,
+                                    const std::function<Image(std::size_t frame)>& read_reference, Progress& progress) {
+  Rungs measured;
+  for (const Rung& rung : rungs_) measure(rung, plan, errors, measured);
   if (!may_grow_) return measured;
   const auto is_beaten = [&] {
-    for (std::size_t i = 0; i < rmses.size(); ++i)
-      if (!is_rung(plan.techniques[i]) && rmses[i] < best_rmse(measured)) return true;
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      if (!is_rung(plan.techniques[i]) && errors[i].error < best_error(measured.error)) return true;
     return false;
   };
   for (const std::uint32_t samples : kMoreSamples) {
     if (!is_beaten()) break;
     Rung rung(samples);
-    for (const std::size_t frame : plan.frames) rung.add(plan, frame, read_reference(frame), colors_, progress);
-    measured.push_back(rung.measured(plan, rmses));
+    for (const std::size_t frame : plan.frames) add(rung, plan, frame, read_reference(frame), progress);
+    measure(rung, plan, errors, measured);
   }
   return measured;
 }
 
 Json MsaaLadder::sums() const {
   Json sums = Json::array();
-  for (const Rung& rung : rungs_) sums.push_back(Json::array({rung.squares, rung.pixels}));
+  for (const Rung& rung : rungs_) sums.push_back(Json::array({rung.squares, rung.errors, rung.pixels}));
   return sums;
 }
 
 void MsaaLadder::set_sums(const Json& sums) {
   for (std::size_t i = 0; i < rungs_.size(); ++i) {
     rungs_[i].squares = sums.at(i).at(0).get<double>();
-    rungs_[i].pixels = sums.at(i).at(1).get<double>();
+    rungs_[i].errors = sums.at(i).at(1).get<double>();
+    rungs_[i].pixels = sums.at(i).at(2).get<double>();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/progress.h"
 #include "tools/evaluate/run_plan.h"
@@ -15,20 +16,35 @@ namespace beampipe {
 // Is it msaa:N without options? Variants with options have other errors than a ladder's msaa:N.
 bool is_rung(const Technique& technique);
 
+// What errors are compared by.
+struct Metric {
+  const Measure& measure = find_metric("rmse");
+  double pixels_per_degree = kPixelsPerDegree;
+};
+
+// The RMSE of a picture, and its error by the metric.
+struct MetricErrors {
+  double rmse = 0, error = 0;
+};
+
 class MsaaLadder {
  public:
   // The rungs are msaa:N for each N in `samples`, in any order, rendered with these colours. If `samples` is empty,
-  // they are 1, 2, 4, ..., 256, and 512 and 1024 if a technique turns out to be better than these. Throws SpecError if
-  // there is no such rate.
-  explicit MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors = SurfaceColors::by_place);
+  // they are 1, 2, 4, ..., 256, and 512 and 1024 if a technique turns out to be better than these by the metric. Throws
+  // SpecError if there is no such rate.
+  explicit MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors = SurfaceColors::by_place,
+                      const Metric& metric = {});
 
   // Renders the frame with the rungs that are not among the plan's techniques, and adds their errors.
   void add(const RunPlan& plan, std::size_t frame, const Image& reference, Progress& progress);
 
-  // The rungs with their errors over all frames. `rmses` has the errors of the plan's techniques, and
-  // read_reference(frame) returns the reference's picture of a frame.
-  std::vector<LadderRung> rungs(const RunPlan& plan, const std::vector<double>& rmses,
-                                const std::function<Image(std::size_t frame)>& read_reference, Progress& progress);
+  struct Rungs {
+    std::vector<LadderRung> rmse, error;  // errors over all frames: the RMSE, and by the metric
+  };
+
+  // `errors` has those of the plan's techniques, and read_reference(frame) returns the reference's picture of a frame.
+  Rungs rungs(const RunPlan& plan, const std::vector<MetricErrors>& errors,
+              const std::function<Image(std::size_t frame)>& read_reference, Progress& progress);
 
   // The sums so far, as JSON: saved and restored to continue a stopped run.
   Json sums() const;
@@ -37,16 +53,19 @@ class MsaaLadder {
  private:
   struct Rung {
     Technique technique;
-    double squares = 0, pixels = 0;  // sums over the frames: squared errors per pixel, and pixels
+    // Sums over the frames: squared errors per pixel, errors per pixel as the metric pools them, and pixels.
+    double squares = 0, errors = 0, pixels = 0;
 
     explicit Rung(std::uint32_t samples);
-    void add(const RunPlan& plan, std::size_t frame, const Image& reference, SurfaceColors colors, Progress& progress);
-    LadderRung measured(const RunPlan& plan, const std::vector<double>& rmses) const;
   };
+
+  void add(Rung& rung, const RunPlan& plan, std::size_t frame, const Image& reference, Progress& progress) const;
+  void measure(const Rung& rung, const RunPlan& plan, const std::vector<MetricErrors>& errors, Rungs& measured) const;
 
   std::vector<Rung> rungs_;  // samples rise
   bool may_grow_;
   SurfaceColors colors_;
+  Metric metric_;
 };
 
 }  // namespace beampipe

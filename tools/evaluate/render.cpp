@@ -3,8 +3,10 @@
 #include <chrono>
 #include <cstdio>
 
+#include "pipeline/bins/threads.h"
 #include "pipeline/bins/timeline.h"
 #include "simd/target.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/resume.h"
 #include "tools/files/image_io.h"
 
@@ -116,16 +118,17 @@ Image render_picture(const Technique& technique, const RunPlan& plan, std::size_
       .result.image;
 }
 
-ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference) {
+ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference,
+                               std::optional<double> pixels_per_degree) {
   try {
-    return measure_error(image, reference);
+    return pixels_per_degree ? measure_all(image, reference, *pixels_per_degree) : measure_error(image, reference);
   } catch (const std::exception& error) {
     throw std::runtime_error(spec + ", frame " + std::to_string(frame) + ": " + error.what());
   }
 }
 
 FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame) {
-  const auto& [spec, index, result, reference] = frame;
+  const auto& [spec, index, result, reference, pixels_per_degree] = frame;
   const Labels labels = {{"beampipe.trace", std::filesystem::path(plan.trace_file).filename().string()},
                          {"beampipe.trace_digest", made_by.at("trace").get<std::string>()},
                          {"beampipe.technique", spec},
@@ -144,7 +147,9 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   report.bin_operations = result.bin_operations;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
-    report.error = measure_named_error(spec, index, result.image, *reference);
+    report.error = on_threads(plan.options.threads, [&] {
+      return measure_named_error(spec, index, result.image, *reference, pixels_per_degree);
+    });
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }
   for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/evaluate/flip.h"
 #include "tools/evaluate/progress.h"
 #include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
@@ -35,8 +37,10 @@ FrameResult render_once(const Technique& technique, const RunPlan& plan, std::si
 Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                      SurfaceColors colors = SurfaceColors::by_place, History* history = nullptr);
 
-// As measure_error, but what it throws says which technique and frame it is about.
-ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference);
+// As measure_error, or, if it has pixels_per_degree, as measure_all; but what it throws says which technique and frame
+// it is about.
+ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference,
+                               std::optional<double> pixels_per_degree = {});
 
 // A frame as one technique has rendered it.
 struct RenderedFrame {
@@ -44,6 +48,7 @@ struct RenderedFrame {
   std::size_t index = 0;
   const FrameResult& result;
   const Image* reference = nullptr;  // what its error is measured against; null: it is not measured
+  double pixels_per_degree = kPixelsPerDegree;
 };
 
 // Writes a frame's image (EXR), its picture (PNG) and its per-pixel counters, if there are any, into the technique's

@@ -61,7 +61,9 @@ struct Report {
   MemoryParameters memory = {};
   Hardware hardware = {};  // whose times are modelled; nothing is modelled if it has no implementations
   std::vector<TechniqueReport> results = {};
-  std::vector<LadderRung> msaa_ladder = {};        // empty if not measured
+  std::string metric = {};                         // what equivalent rates compare; empty if they are not measured
+  std::vector<LadderRung> msaa_ladder = {};        // RMSE; empty if not measured
+  std::vector<LadderRung> metric_ladder = {};      // errors by the metric; empty if that is the RMSE
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
   std::vector<DrawNote> notes = {};                // what the frames ask for and no technique does
   Json made_by = {};                      // what the results depend on: maker_form() in tools/evaluate/resume.h

@@ -108,7 +108,9 @@ Form<Maker> maker_form() {
       .written("ladder", &Maker::ladder, form::list(form::count(1)),
                "compare: the MSAA rates of --ladder; empty: the default ones.")
       .written("causes", &Maker::causes, form::boolean(), "compare: --causes.")
-      .written("orders", &Maker::orders, form::boolean(), "compare: --orders.");
+      .written("orders", &Maker::orders, form::boolean(), "compare: --orders.")
+      .written("metric", &Maker::metric, text, "compare: --metric.")
+      .written("pixels_per_degree", &Maker::pixels_per_degree, form::amount(), "compare: --pixels-per-degree.");
 }
 
 std::string frame_record_name(std::size_t frame) { return frame_stem(kFolder, frame) + ".json"; }

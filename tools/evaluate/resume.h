@@ -26,6 +26,8 @@ struct Maker {
   // Options of `compare` alone.
   std::optional<std::vector<std::uint64_t>> ladder = {};
   std::optional<bool> causes = {}, orders = {};
+  std::optional<std::string> metric = {};
+  std::optional<double> pixels_per_degree = {};
 };
 Form<Maker> maker_form();
 

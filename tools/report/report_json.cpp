@@ -5,11 +5,17 @@
 #include "tools/claims/claims.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/resume.h"
 
 namespace beampipe {
 namespace {
+
+template <class T>
+std::optional<T> if_it_converges(const EquivalentMsaa& emr, T value) {
+  return emr.does_not_converge ? std::nullopt : std::optional(value);
+}
 
 // An equivalent rate, if there is one, among the other keys of an object.
 template <class T, class Place>
@@ -22,13 +28,22 @@ void add_rate(ObjectForm<T>& object, Place rate) {
   };
   using Emr = EquivalentMsaa;
   object
-      .written("equivalent_msaa", part([](const Emr& emr) { return std::optional(emr.samples); }), form::amount(),
-               "Equivalent MSAA rate: the N at which msaa:N has the same RMSE on the same frames.")
-      .written("equivalent_msaa_is_lower_bound", part([](const Emr& emr) { return std::optional(emr.is_lower_bound); }),
-               form::boolean(), "The rate is at least that: the MSAA ladder ends before it.")
+      .written("equivalent_msaa", part([](const Emr& emr) { return if_it_converges(emr, emr.samples); }),
+               form::amount(),
+               "Equivalent MSAA rate: the N at which msaa:N has the same error on the same frames, by the metric.")
+      .written("equivalent_msaa_is_lower_bound",
+               part([](const Emr& emr) { return if_it_converges(emr, emr.is_lower_bound); }), form::boolean(),
+               "The rate is at least that: the MSAA ladder ends before it.")
       .written("equivalent_msaa_is_upper_bound",
                part([](const Emr& emr) { return emr.is_upper_bound ? std::optional(true) : std::nullopt; }),
-               form::boolean(), "The rate is at most that: the first rung of the ladder is better.");
+               form::boolean(), "The rate is at most that: the first rung of the ladder is better.")
+      .written("equivalent_msaa_low", part([](const Emr& emr) { return emr.low; }), form::amount(),
+               "The rate if the error were larger by the unevenness of the MSAA ladder.")
+      .written("equivalent_msaa_high", part([](const Emr& emr) { return emr.high; }), form::amount(),
+               "The rate if the error were smaller by that.")
+      .written("equivalent_msaa_does_not_converge",
+               part([](const Emr& emr) { return emr.does_not_converge ? std::optional(true) : std::nullopt; }),
+               form::boolean(), "There is no rate: the error is below that of the last rung, which falls no more.");
 }
 
 Form<Surface> surface_form() {
@@ -100,7 +115,7 @@ Form<TechniqueReport> result_form() {
       .written("framebuffer", &Result::framebuffer, form::list(surface_form()), "The surfaces in memory.")
       .written("a_buffer_peak_bytes", a_buffer_peak, form::count(),
                "The largest size of the A-buffer in any frame; 0: there is none.")
-      .written("error", &Result::error, error_form(), "Differences from the reference, in linear light.");
+      .written("error", &Result::error, error_form(), "Differences from the reference.");
   add_rate(result, [](const Result& each) { return each.equivalent_msaa; });
   return result
       .written("visibility", visibility_of, visibility_form(),
@@ -130,11 +145,13 @@ Form<FrameContent> content_form() {
       .written("lights", &Content::lights, form::count(), "Their number.");
 }
 
-Form<LadderRung> rung_form() {
+Form<LadderRung> rung_form(const char* key, const char* meaning) {
   return ObjectForm<LadderRung>()
       .written("samples", &LadderRung::samples, form::count(1), "Samples per pixel.")
-      .written("rmse", &LadderRung::rmse, form::amount(), "Its RMSE.");
+      .written(key, &LadderRung::error, form::amount(), meaning);
 }
+
+Form<std::vector<LadderRung>> ladder_form() { return form::list(rung_form("rmse", "Its RMSE.")); }
 
 Form<MemoryParameters> memory_form() {
   ObjectForm<MemoryParameters> object;
@@ -181,9 +198,14 @@ ObjectForm<Report> head_form() {
           form::count(1), "Frames of the whole trace.")
       .written("frames", form::filled(&Report::frames), form::list(content_form()),
                "What each rendered frame asks to be drawn.")
-      .written("msaa_ladder", form::filled(&Report::msaa_ladder), form::list(rung_form()),
-               "Errors of msaa:N, between which equivalent rates are interpolated.")
-      .written("visibility_msaa_ladder", form::filled(&Report::visibility_ladder), form::list(rung_form()),
+      .written("metric", form::filled(&Report::metric), form::one_of(metric_names()),
+               "The measure that equivalent rates compare.")
+      .written("msaa_ladder", form::filled(&Report::msaa_ladder), ladder_form(),
+               "Errors of msaa:N, between which equivalent rates are interpolated if the metric is RMSE.")
+      .written("metric_msaa_ladder", form::filled(&Report::metric_ladder),
+               form::list(rung_form("error", "Its error: 1 - SSIM, the RMSE of sRGB values for PSNR, or the measure.")),
+               "The same by the metric, if that is another.")
+      .written("visibility_msaa_ladder", form::filled(&Report::visibility_ladder), ladder_form(),
                "Those in visibility alone, where surfaces vary.")
       .written("notes", form::filled(&Report::notes), notes_form(), "What the frames ask for and no technique does.");
 }

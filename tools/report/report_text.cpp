@@ -1,12 +1,26 @@
 #include "tools/report/report_text.h"
 
 #include <algorithm>
+#include <set>
 
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/measures.h"
 #include "tools/files/format.h"
 
 namespace beampipe {
 namespace {
+
+const std::set<std::string> kInFirstTable = {"rmse", "bias", "p99", "max"};
+
+// What the unevenness of the ladder leaves open.
+std::string range_text(const EquivalentMsaa& emr) {
+  const auto text = [](const std::optional<double>& rate) { return rate ? emr_text({*rate, false, false}) : ""; };
+  return emr.low || emr.high ? text(emr.low) + ".." + text(emr.high) : "";
+}
+
+std::string number_text(std::string_view key, double value) {
+  return format(key == "psnr" ? "%.2f" : key == "rel_mse" ? "%.3g" : "%.6f", value);
+}
 
 // The median of the frames' medians.
 double median_ms(const TechniqueReport& result) {
@@ -29,15 +43,24 @@ std::size_t width_of(const std::string& text) {
 }  // namespace
 
 std::string emr_text(const EquivalentMsaa& emr) {
+  if (emr.does_not_converge) return "does not converge";
   const std::string samples = emr.samples < 100 ? format("%.3g", emr.samples) : format("%.0f", emr.samples);
   return (emr.is_lower_bound ? "≥ " : emr.is_upper_bound ? "< " : "") + samples;
 }
+
+namespace {
+
+std::string emr_title(const Report& report) {
+  return report.metric_ladder.empty() ? "EMR" : std::string("EMR by ") + find_metric(report.metric).title;
+}
+
+}  // namespace
 
 std::string table_text(const Report& report, const std::string& folder) {
   const bool compared = !report.results.empty() && report.results.front().error.has_value();
   std::vector<std::vector<std::string>> rows(1);
   rows[0] = {"technique", "B/px on chip", "off chip"};
-  if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
+  if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", emr_title(report)});
   const bool varies = compared && report.results.front().parts.has_value();
   if (varies) rows[0].insert(rows[0].end(), {"visibility", "its EMR", "shading"});
   const bool moves = compared && report.results.front().flicker.has_value();
@@ -61,6 +84,22 @@ std::string table_text(const Report& report, const std::string& folder) {
     row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});
   }
   return align_columns(rows, {0, rows[0].size() - 1});
+}
+
+std::string measures_text(const Report& report) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const TechniqueReport& result : report.results) {
+    if (!result.error) return "";
+    rows.push_back({result.technique, result.equivalent_msaa ? range_text(*result.equivalent_msaa) : ""});
+    rows[0] = {"technique", "EMR within"};
+    for (const Measure& measure : measures()) {
+      if (kInFirstTable.contains(measure.key)) continue;
+      const std::optional<double> value = measure.value(*result.error);
+      rows[0].push_back(measure.title);
+      rows.back().push_back(value ? number_text(measure.key, *value) : "");
+    }
+  }
+  return "\n" + align_columns(rows, {0});
 }
 
 std::string causes_text(const Report& report) {

@@ -12,6 +12,10 @@ namespace beampipe {
 // A row of titles and one row per technique. `folder` is put in front of the pictures' paths.
 std::string table_text(const Report& report, const std::string& folder);
 
+// After an empty line, how far EMR is open, and the measures that the first table has no room for; "" if nothing was
+// compared.
+std::string measures_text(const Report& report);
+
 // The results of --causes and --orders, each after an empty line, or "" if they were not asked for.
 std::string causes_text(const Report& report);
 std::string orders_text(const Report& report);
@@ -20,7 +24,7 @@ std::string orders_text(const Report& report);
 // the left, the others on the right.
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left);
 
-// "36.2", "≥ 256" (lower bound), "< 1" (upper bound).
+// "36.2", "≥ 256" (lower bound), "< 1" (upper bound), "does not converge".
 std::string emr_text(const EquivalentMsaa& emr);
 
 }  // namespace beampipe

@@ -7,6 +7,7 @@
 #include "tools/evaluate/energy.h"
 #include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/saved_work.h"
 #include "tools/files/csv.h"
@@ -20,24 +21,45 @@ struct Source {
 };
 
 // Views of the tables of techniques and frames, stages, and claims.
-constexpr const char *kAccuracy = "accuracy", *kMemory = "memory", *kTime = "time";
+constexpr const char *kAccuracy = "accuracy", *kMeasures = "measures", *kMemory = "memory", *kTime = "time";
 constexpr const char *kLeast = "least energy", *kMost = "most energy";
 constexpr const char *kItems = "items", *kOperations = "operations", *kBytes = "bytes", *kTexels = "texels";
 constexpr const char *kNumbers = "numbers", *kSources = "sources";
 
+// From a record's "error".
+Source column_of(const Measure& measure, const char* view) {
+  return {{measure.key, measure.title, measure.unit, measure.meaning, view}, std::string("/error/") + measure.key};
+}
+
+// Adds the measures that are not among the columns.
+std::vector<Source> with_measures(std::vector<Source> sources) {
+  for (const Measure& measure : measures()) {
+    const auto is_it = [&](const Source& source) { return source.column.key == measure.key; };
+    if (std::none_of(sources.begin(), sources.end(), is_it)) sources.push_back(column_of(measure, kMeasures));
+  }
+  return sources;
+}
+
 const std::vector<Source> kTechniqueColumns = {
     {{"technique", "technique", "", "The technique's spec, as `beampipe run -t` takes it."}, "/technique"},
-    {{"rmse", "RMSE", "linear light, 0..1",
-      "Root mean square error against the reference, over R, G and B of all pixels.", kAccuracy},
-     "/error/rmse"},
+    column_of(find_metric("rmse"), kAccuracy),
     {{"emr", "EMR", "samples per pixel",
-      "Equivalent MSAA rate: the number N at which msaa:N has the same RMSE on the same frames.", kAccuracy},
+      "Equivalent MSAA rate: the number N at which msaa:N has the same RMSE on the same frames, or the same error by "
+      "the "
+      "metric of `beampipe compare --metric`.",
+      kAccuracy},
      "/equivalent_msaa"},
     {{"emr_bound", "EMR is", "",
       "Whether the EMR is exact or a bound: at least that of the best rung of the MSAA ladder, or at most that of the "
-      "worst.",
+      "worst. It does not converge if the last rungs are worse and fall no more.",
       kAccuracy},
      "/emr_bound"},
+    {{"emr_low", "EMR from", "samples per pixel",
+      "EMR if the error were larger by the unevenness of the MSAA ladder: how far its errors lie off a smooth curve.",
+      kAccuracy},
+     "/equivalent_msaa_low"},
+    {{"emr_high", "EMR to", "samples per pixel", "EMR if the error were smaller by that.", kAccuracy},
+     "/equivalent_msaa_high"},
     {{"visibility_rmse", "visibility", "linear light, 0..1",
       "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a "
       "triangle "
@@ -104,11 +126,6 @@ const std::vector<Source> kTechniqueColumns = {
       "except the first.",
       kAccuracy},
      "/flicker"},
-    {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels.", kAccuracy},
-     "/error/bias"},
-    {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed.", kAccuracy},
-     "/error/p99"},
-    {{"max", "max", "linear light, 0..1", "The largest absolute error.", kAccuracy}, "/error/max"},
 };
 
 const std::vector<Source> kSurfaceColumns = {
@@ -336,6 +353,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
+    if (result.value("equivalent_msaa_does_not_converge", false)) record["emr_bound"] = "does not converge";
     if (summary.dram_bytes > 0) {  // otherwise no memory was modelled
       for (const char* key : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
         if (const std::optional<double> mean = mean_of_frames(result, key)) record[key] = *mean;
@@ -420,7 +438,7 @@ std::vector<Table> report_tables(const ReportFile& report) {
   const std::string mean = is_sequence ? "Means over the frames. " : "";
   std::vector<Table> tables;
   tables.push_back(make_table("techniques", "Techniques", mean,
-                              with_modelled(kTechniqueColumns, report, "ms per frame", "mJ per frame"),
+                              with_measures(with_modelled(kTechniqueColumns, report, "ms per frame", "mJ per frame")),
                               technique_records(report)));
   tables.push_back(make_table("stages", "Stages",
                               mean +
@@ -428,7 +446,8 @@ std::vector<Table> report_tables(const ReportFile& report) {
                                   "to the overlap.",
                               stage_columns(report), stage_records(report)));
   if (is_sequence)
-    tables.push_back(make_table("frames", "Frames", "", with_modelled(kFrameColumns, report, "ms", "mJ"), frames));
+    tables.push_back(
+        make_table("frames", "Frames", "", with_measures(with_modelled(kFrameColumns, report, "ms", "mJ")), frames));
   const std::vector<Json> saved = saved_records(results);
   if (!saved.empty()) tables.push_back(make_table("saved", "Saved work", mean, saved_columns(), saved));
   tables.push_back(make_table("framebuffer", "Framebuffers", "", kSurfaceColumns, members(results, "framebuffer")));

@@ -119,14 +119,18 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
   }
 
   // Only techniques other than msaa:N need rungs above 256.
-  std::vector<double> rmses;
+  std::vector<MetricErrors> measured;
   for (const VariantPictures& each : pictures) {
     if (is_rung(each.technique)) continue;
     ladder_plan.techniques.push_back(each.technique);
-    rmses.push_back(each.errors.stats().rmse);
+    const double rmse = each.errors.stats().rmse;
+    measured.push_back({rmse, rmse});
   }
-  const std::vector<LadderRung> rungs = ladder.rungs(
-      ladder_plan, rmses, [&](std::size_t frame) { return references.at(frame); }, silent);
+  const std::vector<LadderRung> rungs =
+      ladder
+          .rungs(
+              ladder_plan, measured, [&](std::size_t frame) { return references.at(frame); }, silent)
+          .rmse;
   std::vector<PictureErrors> errors;
   for (const VariantPictures& each : pictures) {
     const ErrorStats stats = each.errors.stats();

@@ -38,9 +38,7 @@ Json to_json(const PictureErrors& errors) {
 }
 
 PictureErrors errors_of(const Json& json) {
-  const Json& error = json.at("error");
-  return {{error.at("rmse").get<double>(), error.at("bias").get<double>(), error.at("p99").get<double>(),
-           error.at("max").get<double>()},
+  return {error_of(json.at("error")),
           {json.at("equivalent_msaa").get<double>(), json.at("is_lower_bound").get<bool>(),
            json.at("is_upper_bound").get<bool>()}};
 }

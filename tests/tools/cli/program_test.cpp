@@ -171,6 +171,39 @@ TEST_F(ProgramTest, CompareTakesALadderOfTheUsersChoice) {
                        {"/results/1/equivalent_msaa_is_lower_bound", true}});
 }
 
+TEST_F(ProgramTest, CompareFindsRatesByAnotherMetric) {
+  succeed({"compare", path("trace.json"), "-t", "beam", "msaa:2", "-o", path("by_rmse"), "--ladder", "1,2,4"});
+  const Parsed by_rmse = parsed(folder_ / "by_rmse/report.json");
+  EXPECT_EQ(by_rmse["metric"], "rmse");
+  EXPECT_FALSE(by_rmse.contains("metric_msaa_ladder"));
+  for (const char* metric : {"ssim", "flip", "psnr"}) {
+    const std::string table = succeed({"compare", path("trace.json"), "-t", "beam", "msaa:2", "-o", path(metric),
+                                       "--ladder", "1,2,4", "--metric", metric});
+    const Parsed json = parsed(folder_ / metric / "report.json");
+    EXPECT_EQ(json["metric"], metric);
+    EXPECT_EQ(json["made_by"]["metric"], metric);
+    EXPECT_EQ(json["msaa_ladder"], by_rmse["msaa_ladder"]);
+    const Parsed& error = json["results"][1]["error"];
+    EXPECT_EQ(error, by_rmse["results"][1]["error"]) << "only the rates depend on the metric";
+    const Parsed& ladder = json["metric_msaa_ladder"];
+    ASSERT_EQ(ladder.size(), 3u);
+    const double of_msaa_2 = metric == std::string("ssim")   ? 1 - error["ssim"].get<double>()
+                             : metric == std::string("psnr") ? error["srgb_rmse"].get<double>()
+                                                             : error["flip"].get<double>();
+    EXPECT_EQ(ladder[1], (Parsed{{"samples", 2}, {"error", of_msaa_2}}));
+    EXPECT_GT(ladder[0]["error"], ladder[2]["error"]);
+    EXPECT_EQ(json["results"][1]["equivalent_msaa"], 2.0);
+    EXPECT_NE(table.find("EMR by "), std::string::npos);
+  }
+  // A rung that is not among the techniques is measured as one of them would be.
+  succeed({"compare", path("trace.json"), "-t", "msaa:1", "-o", path("one"), "--ladder", "1,2,4", "--metric", "flip"});
+  EXPECT_EQ(parsed(folder_ / "one/report.json")["metric_msaa_ladder"],
+            parsed(folder_ / "flip/report.json")["metric_msaa_ladder"]);
+  expect_error({"compare", path("trace.json"), "-t", "beam", "-o", path("x"), "--metric", "bias"}, 2, "--metric");
+  expect_error({"compare", path("trace.json"), "-t", "beam", "-o", path("x"), "--pixels-per-degree", "0"}, 2,
+               "--pixels-per-degree: expected a number in 1..1000, found 0");
+}
+
 TEST_F(ProgramTest, CompareExtendsItsLadderForTechniquesThatAreBetter) {
   // The picture has one edge over a plain background, where analytic coverage is nearly exact.
   write_text(folder_ / "edge.json", R"({"beampipe_trace": 1,
@@ -220,7 +253,13 @@ TEST_F(ProgramTest, DiffTellsTheError) {
                        {"/p99", 0.25},
                        {"/max", 0.25},
                        {"/differing_pixels", 8}});
-  expect_parts(succeed({"diff", path("a.exr"), path("b.exr")}), {"rmse  0.25"});
+  expect_parts(succeed({"diff", path("a.exr"), path("b.exr")}), {"\nrmse       0.25\n", "\npsnr "});
+  succeed({"diff", path("a.exr"), path("b.exr"), "--map", path("map.exr"), "--metric", "rmse"});
+  EXPECT_EQ(read_exr_planes(folder_ / "map.exr").channels.at("rmse"), std::vector<float>(8, 0.25f));
+  succeed({"diff", path("a.exr"), path("a.exr"), "--map", path("map.png"), "--metric", "ssim"});
+  EXPECT_EQ(read_text(folder_ / "map.png"), encode_png(4, 2, std::vector<std::uint8_t>(24, 255))) << "equal is white";
+  expect_error({"diff", path("a.exr"), path("b.exr"), "--map", path("map.jpg")}, 2, "ends in .exr or .png");
+  expect_error({"diff", path("a.exr"), path("b.exr"), "--metric", "flip"}, 2, "--map");
   EXPECT_EQ(Parsed::parse(succeed({"diff", path("a.exr"), path("a.exr"), "--json"}))["differing_pixels"], 0);
   write_text(folder_ / "b.exr", encode_exr(flat_image(2, 4, 0.75f)));
   expect_error({"diff", path("a.exr"), path("b.exr")}, 1, "different sizes: 4 x 2 and 2 x 4");

@@ -101,7 +101,7 @@ const std::vector<LadderRung> kLadder = {{1, 0.4}, {4, 0.1}, {16, 0.025}};  // R
 
 TEST(EquivalentMsaa, OfARungIsThatRung) {
   for (const LadderRung& rung : kLadder) {
-    EXPECT_EQ(equivalent_msaa(rung.rmse, kLadder), (EquivalentMsaa{static_cast<double>(rung.samples), false, false}));
+    EXPECT_EQ(equivalent_msaa(rung.error, kLadder), (EquivalentMsaa{static_cast<double>(rung.samples), false, false}));
   }
 }
 
@@ -127,7 +127,7 @@ TEST(EquivalentMsaa, ARungThatIsWorseThanOneBeforeIsSkipped) {
   EXPECT_NEAR(equivalent_msaa(0.1 / std::sqrt(2.0), ladder).samples, 16 * std::sqrt(2.0), 1e-9);
   // If the error rises at the end, a technique that is better than all rungs still gets the last rung.
   EXPECT_EQ(equivalent_msaa(0.05, {{1, 0.4}, {4, 0.1}, {8, 0.2}}), (EquivalentMsaa{8, true, false}));
-  EXPECT_EQ(best_rmse({{1, 0.4}, {4, 0.1}, {8, 0.2}}), 0.1);
+  EXPECT_EQ(best_error({{1, 0.4}, {4, 0.1}, {8, 0.2}}), 0.1);
 }
 
 TEST(EquivalentMsaa, WithRmseZero) {
@@ -143,6 +143,37 @@ TEST(EquivalentMsaa, WithOneRung) {
   EXPECT_EQ(equivalent_msaa(0.1, {{8, 0.1}}), (EquivalentMsaa{8, false, false}));
   EXPECT_EQ(equivalent_msaa(0.2, {{8, 0.1}}), (EquivalentMsaa{8, false, true}));
   EXPECT_EQ(equivalent_msaa(0.05, {{8, 0.1}}), (EquivalentMsaa{8, true, false}));
+}
+
+TEST(EquivalentMsaa, IsOpenByTheUnevennessOfTheLadder) {
+  // 0.4 / N, but the last error is too large by a factor of e^d. Of the four rungs between others, that of 16 samples
+  // lies d / 2 below the line between its neighbours, whose variance is 1 + 1/4 + 1/4 of that of a rung. So the
+  // unevenness is sqrt((d / 2)^2 / 1.5 / 4) = d / sqrt(24).
+  const double unevenness_of_ladder = 0.2, d = unevenness_of_ladder * std::sqrt(24.0);
+  const std::vector<LadderRung> ladder = {{1, 0.4},  {2, 0.2},    {4, 0.1},
+                                          {8, 0.05}, {16, 0.025}, {32, 0.0125 * std::exp(d)}};
+  ASSERT_TRUE(unevenness(ladder));
+  EXPECT_NEAR(*unevenness(ladder), unevenness_of_ladder, 1e-12);
+  const EquivalentMsaa emr = limited_equivalent_msaa(0.1, ladder);
+  EXPECT_EQ(emr.samples, 4);
+  EXPECT_NEAR(emr.low.value(), 4 * std::exp(-0.2), 1e-9);
+  EXPECT_NEAR(emr.high.value(), 4 * std::exp(0.2), 1e-9);
+  EXPECT_FALSE(limited_equivalent_msaa(0.38, ladder).low) << "worse than the ladder";
+  EXPECT_FALSE(limited_equivalent_msaa(0.026, ladder).high) << "better than the ladder";
+}
+
+TEST(EquivalentMsaa, DoesNotConvergeWhereTheLadderFallsNoMore) {
+  const std::vector<LadderRung> flat = {{1, 0.4}, {2, 0.2}, {4, 0.1}, {8, 0.11}, {16, 0.1}, {32, 0.105}};
+  EXPECT_FALSE(converges(flat));
+  EXPECT_TRUE(limited_equivalent_msaa(0.01, flat).does_not_converge);
+  const EquivalentMsaa on_the_slope = limited_equivalent_msaa(0.2, flat);
+  EXPECT_FALSE(on_the_slope.does_not_converge);
+  EXPECT_EQ(on_the_slope.samples, 2);
+  // A straight ladder converges however slowly it falls, and of a short or exact one nothing is known.
+  EXPECT_TRUE(converges({{1, 0.4}, {2, 0.36}, {4, 0.324}, {8, 0.2916}, {16, 0.26244}}));
+  EXPECT_TRUE(converges({{1, 0.4}, {2, 0.1}, {4, 0.1}, {8, 0.1}}));
+  EXPECT_TRUE(converges({{1, 0.4}, {2, 0.1}, {4, 0.1}, {8, 0.1}, {16, 0}}));
+  EXPECT_FALSE(limited_equivalent_msaa(0.01, {{1, 0.4}, {4, 0.1}}).low);
 }
 
 TEST(EquivalentMsaa, NeedsARisingLadder) {

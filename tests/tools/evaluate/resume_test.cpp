@@ -229,6 +229,19 @@ TEST_F(ResumeTest, OrdersAndCausesGoOnToTheSameSums) {
   expect_to_go_on("compare", {"msaa:2", "alpha", "--ladder", "1", "--orders", "--causes"});
 }
 
+TEST_F(ResumeTest, RatesByAnotherMetricGoOnToTheSameSums) {
+  make_trace(3, 40);
+  expect_to_go_on("compare", {"msaa:2", "alpha", "--ladder", "1,4", "--metric", "ssim"});
+}
+
+TEST_F(ResumeTest, ARecordWithoutAMeasureIsNotBelieved) {
+  make_trace(2);
+  expect_not_believed({"msaa:2", "--ladder", "1"}, Digest::right,
+                      {[](Json& json) { json["techniques"][0]["error"].erase("hdr_flip"); },
+                       [](Json& json) { json["techniques"][0]["error"].erase("mae"); },
+                       [](Json& json) { json["techniques"][0].erase("error"); }});
+}
+
 const std::vector<std::string> kVaryingFrames = {R"({"mesh": "wall"}, {"mesh": "flat"})",
                                                  R"({"mesh": "left"}, {"mesh": "sliver"})",
                                                  R"({"mesh": "sliver"}, {"mesh": "flat"}, {"mesh": "left"})"};

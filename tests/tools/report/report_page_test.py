@@ -26,6 +26,7 @@ import urllib.request
 
 BEAMPIPE, CHROMIUM, CHROMEDRIVER = sys.argv[1:4]
 START_LIMIT = float(sys.argv[4]) if len(sys.argv) > 4 else 60
+MEASURES = ["rmse", "bias", "p99", "max", "p999", "mae", "rel_mse", "srgb_rmse", "psnr", "ssim", "flip", "hdr_flip"]
 TECHNIQUES = ["beam:order=sorted", "alpha", "msaa:1", "msaa:8"]
 KEYS = {"left": "\ue012", "right": "\ue014", "end": "\ue010", "home": "\ue011"}  # WebDriver's names of keys
 
@@ -266,8 +267,7 @@ class ReportPage(PageTest):
         self.assertEqual(sizes["peak_bytes_per_pixel"], (1, "bytes per pixel"))
         for result in self.report["results"]:
             row = rows[result["technique"]]
-            for key, expected in [("rmse", result["error"]["rmse"]), ("bias", result["error"]["bias"]),
-                                  ("p99", result["error"]["p99"]), ("max", result["error"]["max"]),
+            for key, expected in [*((key, result["error"][key]) for key in MEASURES if key in result["error"]),
                                   ("emr", result["equivalent_msaa"]),
                                   ("framebuffer_bytes_per_pixel", result["framebuffer_bytes_per_pixel"]),
                                   ("peak_bytes_per_pixel", result["peak_bytes_per_pixel"]),
@@ -318,7 +318,7 @@ class ReportPage(PageTest):
             **plain("technique", "a_buffer_peak_bytes", "logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes", "flicker"),
             "frame": of("index"), "wall_ms": of("wall_ms", "median"), "wall_ms_min": of("wall_ms", "min"),
             "wall_ms_max": of("wall_ms", "max"), "runs": of("wall_ms", "runs"), "rmse": of("error", "rmse"),
-            "bias": of("error", "bias"),
+            **{key: of("error", key) for key in MEASURES},
             **{f"modelled_ms_{way}_{kind}": of("modelled_ms", way, kind)
                for way in ["shaders", "fixed_function"] for kind in ["overlap", "scheduled", "sum"]},
             **{f"energy_mj_{part}_{end}": of("energy_mj", part, end)

@@ -53,9 +53,10 @@ class SchemaTest(unittest.TestCase):
         cls.run_program("make", "fence", *size, "--triangles", "1000", "--frames", "2", "--orbit", "3", "-o", fence)
         runs = {"run": ["run", fence, "--frames", "0", "--repeat", "2", "-t", "beam", "dvm", "msaa:2,motion"],
                 "no_memory": ["run", fence, "--no-memory-model", "-t", "beam"],
-                "compare": ["compare", fence, "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2", "--hardware", "rtx_4090", "-t",
+                "compare": ["compare", fence, "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2,4,8,16", "--hardware", "rtx_4090", "-t",
                             "beam", "beam:order=sorted", "casav", "acaa:2", "msaa:1"],
-                "varying": ["compare", cls.room, "--inspect-worst", "1", "--ladder", "4,8", "--inspect", "8,4", "-t", "beam", "msaa:4"]}
+                "varying": ["compare", cls.room, "--inspect-worst", "1", "--ladder", "1,2,4,8,16", "--inspect", "8,4", "--metric", "flip", "-t",
+                        "beam", "msaa:4"]}
         cls.reports, cls.inspections = {}, {}
         for name, arguments in runs.items():
             cls.run_program(*arguments, "-o", str(folder / name))
@@ -116,7 +117,9 @@ class SchemaTest(unittest.TestCase):
         for schema, results, absent in [
                 (REPORT.schema, self.reports,
                  {"notes/reason", "notes/left_out", "notes/draws", "notes/triangles", "notes",  # of captured programs
-                  "results/equivalent_msaa_is_upper_bound", "results/visibility/equivalent_msaa_is_upper_bound"}),
+                  "results/equivalent_msaa_is_upper_bound", "results/visibility/equivalent_msaa_is_upper_bound",
+                  "results/visibility/equivalent_msaa_low", "results/visibility/equivalent_msaa_high",  # so small a picture has no
+                  "results/equivalent_msaa_does_not_converge", "results/visibility/equivalent_msaa_does_not_converge"}),
                 (INSPECTIONS.schema, self.inspections, set())]:
             found = {key for result in results.values() for key in keys_of(result)}
             for key in keys_in(schema):

@@ -50,11 +50,9 @@ Report sample_report() {
 Report compared_report() {
   Report report = sample_report();
   report.msaa_ladder = {{1, 0.5}, {8, 0.125}};
-  report.results[0].error = ErrorStats{0.125, -0.25, 0.5, 1.0};
+  report.results[0].error = ErrorStats{0.125, -0.25, 0.5, 1.0, 0.75, 0.25, 2.0};
   report.results[0].equivalent_msaa = EquivalentMsaa{8, false, false};
-  change_frames(report.results[0], [](FrameReport& frame, std::size_t) {
-    frame.error = ErrorStats{0.125, -0.25, 0.5, 1.0};
-  });
+  change_frames(report.results[0], [&](FrameReport& frame, std::size_t) { frame.error = report.results[0].error; });
   return report;
 }
 
@@ -137,7 +135,8 @@ TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
 
 TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
   Report report = compared_report();
-  const Json error = {{"rmse", 0.125}, {"bias", -0.25}, {"p99", 0.5}, {"max", 1.0}};
+  const Json error = {{"rmse", 0.125}, {"bias", -0.25}, {"p99", 0.5},    {"max", 1.0},
+                      {"p999", 0.75},  {"mae", 0.25},   {"rel_mse", 2.0}};
   Json result = report_json(report)["results"][0];
   EXPECT_EQ(report_json(report)["msaa_ladder"].at(1), (Json{{"samples", 8}, {"rmse", 0.125}}));
   EXPECT_EQ(result["error"], error);
@@ -152,6 +151,14 @@ TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
   result = report_json(report)["results"][0];
   EXPECT_EQ(result["equivalent_msaa_is_lower_bound"], false);
   EXPECT_EQ(result["equivalent_msaa_is_upper_bound"], true);
+  report.results[0].equivalent_msaa = {.samples = 8, .low = 7, .high = 9};
+  result = report_json(report)["results"][0];
+  EXPECT_EQ(result["equivalent_msaa_low"], 7.0);
+  EXPECT_EQ(result["equivalent_msaa_high"], 9.0);
+  report.results[0].equivalent_msaa = {.samples = 8, .is_lower_bound = true, .does_not_converge = true};
+  result = report_json(report)["results"][0];
+  EXPECT_FALSE(result.contains("equivalent_msaa")) << "there is no number";
+  EXPECT_EQ(result["equivalent_msaa_does_not_converge"], true);
 }
 
 TEST(ReportJson, HasThePartsOfErrorsWhereSurfacesVary) {
@@ -245,10 +252,29 @@ TEST(Table, HasErrorsAfterCompare) {
             "out/msaa_8/frame_0004.png\n");
 }
 
+TEST(Table, HasTheOtherMeasuresBelow) {
+  Report report = compared_report();
+  report.results[0].error->srgb_rmse = 0.01;  // 40 dB
+  report.results[0].error->ssim = 0.96875;
+  report.results[0].equivalent_msaa = {.samples = 8, .low = 7.25, .high = 9.5};
+  report.results[0].error->flip = report.results[0].error->hdr_flip = 0.125;
+  report.results.push_back(report.results[0]);
+  report.results[1].technique = "reference";
+  report.results[1].equivalent_msaa = {.samples = 1024, .is_lower_bound = true, .low = 256};
+  report.results[1].error = ErrorStats{.srgb_rmse = 0.0, .ssim = 1, .flip = 0.0, .hdr_flip = 0.0};
+  EXPECT_EQ(measures_text(report),
+            "\n"
+            "technique  EMR within     p99.9       MAE  relMSE  sRGB RMSE   PSNR      SSIM      FLIP  HDR-FLIP\n"
+            "msaa:8      7.25..9.5  0.750000  0.250000       2   0.010000  40.00  0.968750  0.125000  0.125000\n"
+            "reference       256..  0.000000  0.000000       0   0.000000         1.000000  0.000000  0.000000\n");
+  EXPECT_EQ(measures_text(sample_report()), "");
+}
+
 TEST(Table, MarksBoundsOfEquivalentRates) {
   EXPECT_EQ(emr_text({36.24, false, false}), "36.2");
   EXPECT_EQ(emr_text({1024, true, false}), "≥ 1024");
   EXPECT_EQ(emr_text({1, false, true}), "< 1");
+  EXPECT_EQ(emr_text({1024, true, false, true}), "does not converge");
 }
 
 }  // namespace beampipe::report_test

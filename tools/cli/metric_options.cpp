@@ -1,0 +1,24 @@
+#include "tools/cli/metric_options.h"
+
+#include "tools/evaluate/measures.h"
+#include "tools/files/format.h"
+
+namespace beampipe {
+
+std::string measures_help() {
+  std::string text = "Measures of R, G and B in linear light, unless they say otherwise:\n";
+  for (const Measure& measure : measures()) text += format("  %-9s  %s\n", measure.key, measure.meaning);
+  return text;
+}
+
+void add_pixels_per_degree(Command& command, double& pixels_per_degree) {
+  command.add("--pixels-per-degree", pixels_per_degree,
+              "what FLIP takes a degree of the view to be (default: 67.02, a 4K screen of 0.7 m from 0.7 m)");
+}
+
+void check_pixels_per_degree(double pixels_per_degree) {
+  if (!(pixels_per_degree >= 1 && pixels_per_degree <= 1000))
+    throw UsageError(format("--pixels-per-degree: expected a number in 1..1000, found %g", pixels_per_degree));
+}
+
+}  // namespace beampipe
