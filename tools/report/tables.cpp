@@ -183,11 +183,11 @@ std::vector<Source> stage_columns(const ReportFile& report) {
       {{"lane_use", "lane use", "part, 0..1", "Lanes with work, divided by lanes issued.", kItems}, "/lane_use"});
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
     columns.push_back(
-        {{"modelled_ms_" + implementation, "modelled, " + name_of(report, implementation), "ms",
+        {{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
           "Time that the modelled hardware takes for this stage, which is that of its busiest unit.", kTime},
          "/modelled_ms/" + implementation});
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
-    columns.push_back({{"busiest_unit_" + implementation, "busiest, " + name_of(report, implementation), "",
+    columns.push_back({{"busiest_unit_" + implementation, "busiest, " + implementation, "",
                         "The unit that takes so long, in the last frame.", kTime},
                        "/busiest_unit/" + implementation});
   add_energy(columns, report, "mJ");
@@ -290,14 +290,14 @@ std::vector<Source> with_modelled(std::vector<Source> sources, const ReportFile&
       std::find_if(sources.begin(), sources.end(), [](const Source& s) { return s.column.key == "dram_bytes"; });
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
-    const std::string title = "modelled, " + name_of(report, implementation) + ", ";
-    const Source overlap = {{key + "_overlap", title + "overlap", unit,
+    const std::string title = implementation + ", ";
+    const Source overlap = {{key + "_overlap", title + "at once", unit,
                              "Modelled time if all stages run at once: the time of the busiest unit.", kTime},
                             pointer + "/overlap"};
     const Source scheduled = {{key + "_scheduled", title + "on cores", unit,
                                "Modelled time if bins are drawn one by one on cores, after the geometry.", kTime},
                               pointer + "/scheduled"};
-    const Source sum = {{key + "_sum", title + "sum", unit,
+    const Source sum = {{key + "_sum", title + "in turn", unit,
                          "Modelled time if the stages run one after the other: the sum of their times.", kTime},
                         pointer + "/sum"};
     place = std::next(sources.insert(std::next(place), {overlap, scheduled, sum}));

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr const char *kTraces = "traces", *kTechniques = "techniques", *kSizes = "sizes", *kHardware = "hardware",
                      *kImplementations = "implementations", *kMemorySystem = "memory_system";
 constexpr const char* kClock = "clock_mhz";  // is varied like a rate
-constexpr const char *kRows = "rows of the table", *kKinds = "kinds of hardware";
+constexpr const char *kTableRows = "rows of the table", *kKinds = "kinds of hardware";
 constexpr std::uint32_t kMostPixels = 16384;
 
 Form<double> rate_form() { return form::number_between(0, std::numeric_limits<double>::infinity()); }
@@ -173,7 +173,7 @@ class PlanReader {
       if (!axes.contains(required)) grid.fail("the key " + in_quotes(required), "none");
     // Everything that is counted here is in the table's rows, so it is checked before any of it is made. Points that
     // came before and implementations that are not named count too, and are checked while rows are added.
-    limit_combinations(axes, "", kMostRows, grid, kRows);
+    limit_combinations(axes, "", kMostRows, grid, kTableRows);
     limit_combinations(axes, kHardware, kMostHardware, grid, kKinds);
 
     const std::vector<System> systems = read_systems(grid, axes);
@@ -194,7 +194,7 @@ class PlanReader {
             const std::size_t cell = add_cell({trace, size, technique, system.memory});
             for (const std::size_t each : system.hardware) {
               add_rows(cell, each, axes);
-              if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kRows);
+              if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kTableRows);
             }
           }
     if (plan_.hardware.size() > kMostHardware) fail_limit(grid, kMostHardware, kKinds);

@@ -420,9 +420,15 @@ class ReportPage(PageTest):
         rows = table_rows(self.browser, "stages")
         self.assertEqual([(row["technique"][0], row["stage"][0]) for row in rows], list(expected))
         for row, sums in zip(rows, expected.values()):
-            self.assertEqual({key: float(value) if value else None for key, (value, _) in row.items()
-                              if key not in ["technique", "stage"]},
-                             {key: sums.get(key) for key in row if key not in ["technique", "stage"]})
+            numbers = {key: float(value) if value else None for key, (value, _) in row.items()
+                       if key not in ["technique", "stage"] and not key.startswith("busiest_unit_")}
+            self.assertEqual(numbers, {key: sums.get(key) for key in numbers})
+        last = {(result["technique"], stage["stage"]): stage.get("busiest_unit", {})
+                for result in self.report["results"] for stage in result["frames"][-1]["stages"]}
+        for row in rows:
+            units = last[row["technique"][0], row["stage"][0]]
+            for way in ["shaders", "fixed_function"]:
+                self.assertEqual(row[f"busiest_unit_{way}"][0], units.get(way, ""))
 
     def test_saved_work_is_that_of_the_stages(self):
         rows = {row["technique"][0]: row for row in table_rows(self.browser, "saved")}

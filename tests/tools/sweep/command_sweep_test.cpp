@@ -289,8 +289,8 @@ TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
   };
 
   const std::string dry = succeed(sweep({"--slurm", "--dry-run"}));
-  EXPECT_NE(dry.find("\nsbatch --array=0-2 " + path("out/slurm/array.sh") + "\nsbatch --dependency=afterany:JOB " +
-                     path("out/slurm/merge.sh") + "\n"),
+  EXPECT_NE(dry.find("\nsbatch --array=0-2 '" + path("out/slurm/array.sh") + "'\nsbatch --dependency=afterany:JOB '" +
+                     path("out/slurm/merge.sh") + "'\n"),
             std::string::npos)
       << dry;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bin/submitted"));

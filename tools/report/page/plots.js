@@ -152,7 +152,7 @@ function makeFigure(figure) {
   };
   select.addEventListener("change", draw);
   byId("implementation").addEventListener("change", ({ target }) => {
-    const at = figure.choices.findIndex((choice) => choice.label === `modelled time: ${target.value}`);
+    const at = figure.choices.findIndex((choice) => choice.label.endsWith(`.${target.value}`));
     if (at < 0) return;
     select.value = at;
     draw();
