@@ -219,6 +219,8 @@ mutants=(  # file | text as it is | broken
   'tools/evaluate/sensitivity.cpp|(values.size() + 19) / 20 - 1|values.size() / 20'
   'tools/evaluate/sensitivity.cpp|std::pow(range.high / range.low, part)|(1 + part * (range.high / range.low - 1))'
   'tools/evaluate/remodel.cpp|report.hardware.memory = report.memory;|'
+  'pipeline/bins/render_bins.cpp|held += kept_in_l2_[bin].peak_bytes|held = kept_in_l2_[bin].peak_bytes'
+  'pipeline/bins/render_bins.cpp|static_cast<double>(held - memory.l2.bytes)|static_cast<double>(held)'
   'pipeline/memory/framebuffer.cpp|!has_room_for(memory.bins_per_core)|!has_room_for(1)'
   'pipeline/memory/framebuffer.cpp|return has_room_for(1) ? side : largest|return side'
   'tools/evaluate/modelled_time.cpp|stage.stage.id == StageId::shade && !has_light|stage.stage.id == StageId::shade'

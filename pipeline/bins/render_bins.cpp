@@ -162,6 +162,7 @@ class FrameRecorder {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, {}};
     result_.bin_operations.resize(bins);
+    kept_in_l2_.resize(bins);
     for (const Stage stage : stages) result_.stages.push_back(StageCounters{stage});
   }
 
@@ -195,6 +196,7 @@ class FrameRecorder {
         for (int i = 0; stage.stage.id == of_pass->stage.id && i < passes(stage.stage.pass); ++i) stage += *of_pass;
     if (trace_) repeat_geometry();
     charge_texture_dram();
+    charge_kept_in_l2();
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {
         {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
@@ -207,6 +209,7 @@ class FrameRecorder {
   // `has_counts`, `has_picture`: are the pixel counters and the picture other than what the frame starts with?
   void add(const Bin& bin, const Tile& tile, std::size_t index, bool has_counts, bool has_picture) {
     for (const StageCounters& stage : bin.stages()) result_.bin_operations[index] += stage.ops.total();
+    kept_in_l2_[index] = bin.kept_in_l2();
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
@@ -254,6 +257,29 @@ class FrameRecorder {
     }
   }
 
+  // L2 holds what the bins in work keep in memory, as far as it has room. What is beyond that moves to and from DRAM.
+  void charge_kept_in_l2() {
+    const MemoryParameters& memory = context_.run.memory;
+    for (std::size_t first = 0; first < kept_in_l2_.size(); first += memory.bins_in_work()) {
+      const std::size_t end = std::min(first + memory.bins_in_work(), kept_in_l2_.size());
+      std::uint64_t held = 0;
+      for (std::size_t bin = first; bin < end; ++bin) held += kept_in_l2_[bin].peak_bytes;
+      result_.cache_reach.add({.l2 = held});
+      for (std::size_t bin = first; held > memory.l2.bytes && bin < end; ++bin) {
+        const Bin::KeptInL2& kept = kept_in_l2_[bin];
+        if (kept.requests == 0) continue;
+        const auto part = static_cast<double>(held - memory.l2.bytes) / static_cast<double>(held);
+        const auto missed = static_cast<std::uint64_t>(static_cast<double>(kept.requests) * part);
+        DramLog log;
+        StageCounters moved{kept.stage};
+        stream({memory, trace_ ? &log : nullptr}, DramAccess::read, {name_of(kept.stage)}, missed * memory.sector_bytes,
+               moved);
+        find_counters(result_.stages, kept.stage)->dram_bytes += moved.dram_bytes;
+        if (trace_) trace_->add(log, first_pass_, bin);
+      }
+    }
+  }
+
   // The texels that a bin fetches in a pass over the frame follow the bin's other requests in that pass.
   TextureFetch record_texels() {
     return [this](std::size_t bin, std::size_t pass, const std::vector<TextureRead>& reads) {
@@ -287,6 +313,7 @@ class FrameRecorder {
   glm::vec4 color_{0.0f};  // that the picture starts with
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
+  std::vector<Bin::KeptInL2> kept_in_l2_;      // by bin
   int passes_ = 1, prepasses_ = 0;
   DramTrace* trace_;
   std::uint32_t first_pass_;                                     // of the trace

@@ -81,16 +81,11 @@ class ComposePooledUnit {
   }
 
  private:
-  // Beside a pool on chip, a chunk in memory is a request of a sector. L2 holds those of the bins in work, all of which
-  // are taken to have as many as this one; what is beyond it moves to and from DRAM.
+  // Beside a pool on chip, a chunk in memory is a request of a sector.
   void charge_chunks_in_memory() {
-    const MemorySystem& memory = bin_.memory();
-    const std::uint64_t bytes = chunks_in_memory_ * memory.sector_bytes;
-    const std::uint64_t held = pixels_.pool.peak_in_memory() * memory.sector_bytes * memory.bins_in_work();
-    if (memory.reach) memory.reach->add({.l2 = held});
-    const std::uint64_t missed = held > memory.l2.bytes ? chunks_in_memory_ * (held - memory.l2.bytes) / held : 0;
-    stage_.streams(missed * memory.sector_bytes);
-    stage_.moves_in_l2(bytes - missed * memory.sector_bytes);
+    const std::uint32_t bytes = bin_.memory().sector_bytes;
+    stage_.moves_in_l2(chunks_in_memory_ * bytes);
+    bin_.keeps_in_l2({stage_.counters.stage, chunks_in_memory_, pixels_.pool.peak_in_memory() * bytes});
   }
 
   // What holds for the whole bin, in each of its pixels.
