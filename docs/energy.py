@@ -14,7 +14,7 @@ from measure import print_head, print_row
 
 
 def text_of(interval):
-    return f"{interval[0]:.2g} to {interval[1]:.2g}"
+    return f"{interval[0]:.2g}–{interval[1]:.2g}"
 
 
 def main(program, *folders):

@@ -53,7 +53,7 @@ def first_folders(folders):
 
 def cells_of(times, names):
     """Milliseconds with their interval, and the busiest unit."""
-    return [f"{time['sum']:.3f} ({time['sum_interval'][0]:.3g} to {time['sum_interval'][1]:.3g}, {time['busiest']})"
+    return [f"{time['sum']:.3f} ({time['sum_interval'][0]:.3g}–{time['sum_interval'][1]:.3g}, {time['busiest']})"
             for time in (times[name] for name in names)]
 
 
@@ -123,7 +123,7 @@ def errors(program, folders):
                 time = found[technique][name]
                 off = 100 * (time["ratio"] * PUBLISHED_MS[BASE] / PUBLISHED_MS[technique] - 1)
                 low, high = time["ratio_interval"]
-                cells.append(f"{time['ratio']:.2f} ({low:.2f} to {high:.2f}; {off:+.0f} %)")
+                cells.append(f"{time['ratio']:.2f} ({low:.2f}–{high:.2f}; {off:+.0f} %)")
             print_row(f"{scene}, `{name}`", *cells)
 
 
@@ -138,7 +138,7 @@ def beam(program, folders):
                 of = [by_cost[cost][scene][BEAM][name] for scene in scenes]
                 ratios = [time["ratio"] for time in of]
                 low, high = min(time["ratio_interval"][0] for time in of), max(time["ratio_interval"][1] for time in of)
-                cells.append(f"{min(ratios):.2f} to {max(ratios):.2f} ({low:.2f} to {high:.2f})")
+                cells.append(f"{min(ratios):.2f}–{max(ratios):.2f} ({low:.2f}–{high:.2f})")
             print_row(f"`{BEAM}` / `{msaa}`", f"`{name}`", *cells)
 
 

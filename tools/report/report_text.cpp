@@ -73,7 +73,8 @@ std::string table_text(const Report& report, const std::string& folder) {
     if (compared) {
       const ErrorStats& error = result.error.value();
       row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),
-                             format("%.5f", error.max), emr_text(result.equivalent_msaa.value())});
+                             format("%.5f", error.max),
+                             result.technique == kReferenceSpec ? "" : emr_text(result.equivalent_msaa.value())});
     }
     if (varies) {
       const ErrorParts& parts = result.parts.value();
