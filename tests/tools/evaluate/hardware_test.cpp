@@ -65,7 +65,7 @@ TEST(Hardware, ErrorsNameTheKey) {
        "/memory_system/parameters/bins_per_core: expected an integer 1..64, found 0.5"},
       {"\"cores\":80", "\"cores\":0", "/memory_system/parameters/cores: expected an integer 1..65536, found 0"},
       {"\"rop_samples_per_clk\":[384,768]", "\"rop_samples_per_clk\":[384]",
-       "/ranges/rop_samples_per_clk: expected two numbers, the lowest and the highest rate"},
+       "/ranges/rop_samples_per_clk: expected two numbers, the lowest and the highest"},
       {"\"rop_samples_per_clk\":[384,768]", "\"rop_samples_per_clk\":[513,768]",
        "/ranges/rop_samples_per_clk: expected a range around the rate of 512"},
       {"\"compose\":", "\"componse\":",
