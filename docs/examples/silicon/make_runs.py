@@ -32,8 +32,9 @@ def part(name, mhz, sms, sm, rops, export, rasters, gb_per_s, l2_kib, sources):
         "issue_per_clk": lanes, "mul_add_per_clk": lanes, "add_per_clk": lanes, "bit_per_clk": lanes / 2,
         "wide_per_clk": lanes / 4, "fetch_per_clk": loads, "special_per_clk": special, "convert_per_clk": special,
         "texture_bytes_per_clk": 16 * textures, "rop_samples_per_clk": round(rops * 16 / 3),
-        "rop_fragments_per_clk": rops, "rop_bytes_per_clk": round(rops * 16 / 3) * 4, "on_chip_bytes_per_clk": 128 * sms,
-        "l2_bytes_per_clk": 32 * rops / 2, "dram_bytes_per_clk": round(gb_per_s * 1e3 / mhz, 1)}
+        "rop_fragments_per_clk": rops, "rop_bytes_per_clk": round(rops * 16 / 3) * 4,
+        "on_chip_bytes_per_clk": 128 * sms, "l2_bytes_per_clk": 32 * rops / 2,
+        "dram_bytes_per_clk": round(gb_per_s * 1e3 / mhz, 1)}
     hardware = json.loads(TITAN_V.read_text())
     hardware |= {"name": name, "clock_mhz": mhz}
     hardware.pop("energy")
@@ -41,7 +42,8 @@ def part(name, mhz, sms, sm, rops, export, rasters, gb_per_s, l2_kib, sources):
         "parameters": {"l2_bytes": l2_kib * 1024, "l2_ways": 16, "on_chip_bytes": 49152, "bins_per_core": 2,
                        "cores": sms},
         "sources": {"l2_bytes": sources["l2"], "l2_ways": "choice",
-                    "on_chip_bytes": "48 KB of shared memory in each SM (Fermi whitepaper)", "bins_per_core": "choice, as titan_v", "cores": sources["sms"]}}
+                    "on_chip_bytes": "48 KB of shared memory in each SM (Fermi whitepaper)",
+                    "bins_per_core": "choice, as titan_v", "cores": sources["sms"]}}
     sourced = ("export_bytes_per_clk", "raster_pixels_per_clk")
     hardware["ranges"] = {rate: [rates.get(rate, was) * end / was for end in ends]
                           for rate, ends in hardware["ranges"].items() if rate not in sourced
@@ -90,7 +92,8 @@ def trace(width, height, cell, layers, opacity):
     layer = {"positions": positions, "indices": indices}
     made = {"beampipe_trace": 2, "meshes": {"layer": layer}}
     if opacity < 1:
-        made["materials"] = {"glass": {"base_color": [0.5, 0.5, 0.5, opacity], "alpha_mode": "blend", "unlit": True, "double_sided": True}}
+        glass = {"base_color": [0.5, 0.5, 0.5, opacity], "alpha_mode": "blend", "unlit": True, "double_sided": True}
+        made["materials"] = {"glass": glass}
         layer["materials"] = ["glass"]
     identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
     depths = [0.9 - 1.8 * i / layers for i in range(layers)]
