@@ -64,7 +64,8 @@ std::vector<CsvRow> read_csv(const std::filesystem::path& file, const std::vecto
   std::vector<CsvRow> rows = rows_of(read_input_file(file, file.string(), kMostBytes), file);
   const std::string expected = "the header " + joined(header);
   if (rows.empty()) fail_trace(place(file, 1), expected, "an empty file");
-  if (rows.front().fields != header) fail_trace(place(file, rows.front().line), expected, joined(rows.front().fields));
+  if (rows.front().fields != header)
+    fail_trace(place(file, rows.front().line), expected, in_quotes(joined(rows.front().fields)));
   rows.erase(rows.begin());
   for (const CsvRow& row : rows)
     if (row.fields.size() != header.size())

@@ -48,12 +48,14 @@ class Reader {
   }
   [[noreturn]] void fail(const std::string& name, const std::string& expected, const std::string& found) const {
     fail_trace(file_.string() + ", line " + std::to_string(row_->line) + ", " + name, expected,
-               found.empty() ? "nothing" : found);
+               found.empty() ? "nothing" : in_quotes(found));
   }
 
   MeasuredRow row_of_fields() {
     MeasuredRow row{.name = field("name"), .source = field("source"), .measured = measured()};
-    if (row.name.empty()) fail("name", "a name", "");
+    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+    if (row.name.empty() || std::any_of(row.name.begin(), row.name.end(), is_control))
+      fail("name", "a name without control characters", row.name);
     if (row.source.empty()) fail("source", "where the number is from", "");
     row.is_fitted = !field("fitted").empty();
     if (row.is_fitted && field("fitted") != "fitted") fail("fitted", "fitted or nothing", field("fitted"));

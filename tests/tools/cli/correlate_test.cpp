@@ -74,20 +74,25 @@ TEST_F(Correlate, MistakesNameFileLineAndField) {
   const struct {
     std::string row, message;
   } cases[] = {
-      {",out,msaa:1,shaders,,,2,,card", "m.csv, line 2, name: expected a name, found nothing"},
+      {",out,msaa:1,shaders,,,2,,card",
+       "m.csv, line 2, name: expected a name without control characters, found nothing"},
+      {"\"a\nb\",out,msaa:1,shaders,,,2,,card", "line 2, name: expected a name without control characters"},
       {"a,,msaa:1,shaders,,,2,,card", "line 2, folder: expected a folder that run wrote, found nothing"},
       {"a,nowhere,msaa:1,shaders,,,2,,card", "nowhere: no such folder"},
       {"a,out,msaa:2,shaders,,,2,,card", "line 2, technique: expected a technique of"},
       {"a,out,msaa:1,lasers,,,2,,card", "line 2, implementation: expected one of the hardware of"},
       {"a,out,msaa:1,shaders,other,,2,,card", "line 2, over_technique: expected a technique beside over_folder"},
       {"a,out,msaa:1,shaders,other,msaa:1,2,,card", "line 2, over_technique: expected a technique of"},
-      {"a,out,msaa:1,shaders,,,2,maybe,card", "line 2, fitted: expected fitted or nothing, found maybe"},
+      {"a,out,msaa:1,shaders,,,2,maybe,card", "line 2, fitted: expected fitted or nothing, found \"maybe\""},
       {"a,out,msaa:1,shaders,,,2,,", "line 2, source: expected where the number is from, found nothing"},
   };
   for (const auto& [row, message] : cases) expect_error({"correlate", write(row + "\n")}, 1, message);
   for (const std::string measured : {"", "0", "-1", "nan", "inf", "1e99", "2 ms", "0x2"})
     expect_error({"correlate", write("a,out,msaa:1,shaders,,," + measured + ",,card\n")}, 1,
                  "line 2, measured: expected milliseconds or a quotient, 1e-9 to 1e9, found");
+  EXPECT_LT(run_program({"correlate", write(std::string(1 << 20, 'x'))}).err.size(), 500u);
+  EXPECT_LT(run_program({"correlate", write("a,out," + std::string(1 << 20, 'x') + ",shaders,,,2,,card\n")}).err.size(),
+            500u);
   expect_error({"correlate", path("none.csv")}, 1, "none.csv");
   expect_error({"correlate", path("out")}, 1, "out");
   expect_error({"correlate", write(""), "-o", path("m.pdf")}, 2, "expected a name that ends in .svg or .png");

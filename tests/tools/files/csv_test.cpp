@@ -42,7 +42,7 @@ TEST_F(Csv, FieldsAreReadAsTheyWereWritten) {
 
 TEST_F(Csv, MistakesNameTheirLine) {
   expect_error("", "line 1: expected the header a,b, found an empty file");
-  expect_error("a;b\n", "line 1: expected the header a,b, found a;b");
+  expect_error("a;b\n", "line 1: expected the header a,b, found \"a;b\"");
   expect_error("a,b\n1,2\n1,2,3\n", "line 3: expected 2 fields, found 3");
   expect_error("a,b\n\n\"1,2\n", "line 3: expected a quote that ends the field, found the end of the file");
   expect_error(std::string("a,b\n\0", 5), "line 2: expected 2 fields, found 1");
