@@ -121,7 +121,7 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
 // What a stage needs to know of the frame's other stages.
 struct FrameKind {
   bool has_light = false;
-  bool has_rops = true;  // the colours that are shaded go to ROPs, which test depth or add them up
+  bool has_rops = true;  // the colours that are shaded go to ROPs
 };
 
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
@@ -148,6 +148,17 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
 
 bool has_stage(const std::vector<StageCounters>& stages, StageId id) {
   return std::any_of(stages.begin(), stages.end(), [id](const auto& s) { return s.stage.id == id; });
+}
+
+// Does the implementation do any of these stages in ROPs?
+bool has_rops(const Implementation& implementation, const std::vector<StageCounters>& stages) {
+  const auto is_rop = [](const std::string& unit) {
+    return unit == "rop_samples" || unit == "rop_fragments" || unit == "composer";
+  };
+  return std::any_of(stages.begin(), stages.end(), [&](const StageCounters& stage) {
+    const auto found = implementation.units.find(stage.stage.id);
+    return found != implementation.units.end() && std::any_of(found->second.begin(), found->second.end(), is_rop);
+  });
 }
 
 void add_times(std::map<std::string, double>& busy, const std::map<std::string, double>& times) {
@@ -210,8 +221,7 @@ std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vec
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work) {
-  const FrameKind frame{has_stage(work.stages, StageId::light),
-                        has_stage(work.stages, StageId::depth_test) || has_stage(work.stages, StageId::accumulate)};
+  const FrameKind frame{has_stage(work.stages, StageId::light), has_rops(implementation, work.stages)};
   ModelledTime time;
   std::map<std::string, double> before, of_bins;
   for (const StageCounters& stage : work.stages) {

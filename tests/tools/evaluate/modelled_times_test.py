@@ -77,14 +77,17 @@ class ModelledTimesTest(unittest.TestCase):
         compared = []
         for result in report["results"]:
             frame = result["frames"][0]
-            has_rops = any(stage["stage"].endswith(("depth_test", "accumulate")) for stage in frame["stages"])
             bin_bytes = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels")
             held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), memory["bins_per_core"]), 1)
             for way, implementation in hardware["implementations"].items():
                 before, of_bins, in_turn = {}, {}, 0
+                units_of = {stage["stage"]: implementation["units"][stage["stage"].removeprefix("prepass_")]
+                            for stage in frame["stages"]}
+                used = {unit for units in units_of.values() for unit in units}
+                has_rops = used & {"rop_samples", "rop_fragments", "composer"}
                 not_there = {"on_chip"} if has_rops else {"on_chip", "export"}
                 for stage in frame["stages"]:
-                    units = implementation["units"][stage["stage"].removeprefix("prepass_")]
+                    units = units_of[stage["stage"]]
                     stall = memory["bins_per_core"] / held if "on_chip" in units and bin_bytes else 1
                     times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0) / clocks_per_ms * stall
                              for unit in units if unit not in not_there}
