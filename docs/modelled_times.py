@@ -12,6 +12,7 @@ bins     what a bin has on chip, and milliseconds
 errors   times over that of the published pipeline, beside the paper's ratios
 beam     times of beam over those of MSAA, for several prices of shading
 traffic  what a bin has on chip, DRAM bytes of geometry and of the rest, and milliseconds
+measured  measured times of a CSV file, which stands in place of the folders, and what is modelled
 """
 import argparse
 import json
@@ -165,9 +166,21 @@ def traffic(program, folders):
                       *(f"{times_of[name][part]['sum']:.2f}" if part in times_of[name] else "" for part in names))
 
 
+def measured(program, files):
+    text = subprocess.run([program, "correlate", *files, "--json"], check=True, capture_output=True, text=True).stdout
+    found = json.loads(text)
+    ways = ("in_turn", "at_once")
+    print_head("", "measured", "in turn", "over measured", "at once", "over measured")
+    for row in found["rows"]:
+        modelled = [(f"{row[way]['modelled']:.3g}", f"{row[way]['over_measured']:.2f}") for way in ways]
+        print_row(row["name"], f"{row['measured']:.3g}", *modelled[0], *modelled[1])
+    errors = [cell for way in ways for cell in ("", f"{found[way]['mape']:.0%}".replace("%", " %"))]
+    print_row("mean absolute error", "", *errors)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "cores", "bins", "errors", "beam", "traffic"))
+    parser.add_argument("table", choices=("times", "cores", "bins", "errors", "beam", "traffic", "measured"))
     parser.add_argument("program")
     parser.add_argument("folders", nargs="+")
     options = parser.parse_args()

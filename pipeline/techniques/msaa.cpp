@@ -14,12 +14,32 @@
 namespace beampipe {
 namespace {
 
-std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 : kSampleColorBytes; }
+// How a sample's colour is stored.
+struct ColorFormat {
+  const char* name;
+  std::uint32_t bytes;
+  AccumulatorFormat channel;
+};
+
+ColorFormat format_of(const MsaaOptions& options) {
+  switch (options.color) {
+    case SampleColor::rgba16f:
+      return {"RGBA16F", 8, AccumulatorFormat::fp16};
+    case SampleColor::rgba8:
+      return {"RGBA8", 4, AccumulatorFormat::unorm8};
+    case SampleColor::rgba32f:
+      return {"RGBA32F", 16, AccumulatorFormat::fp32};
+    default:
+      return {"RGB16F", kSampleColorBytes, AccumulatorFormat::fp16};
+  }
+}
+
+std::uint32_t color_bytes(const MsaaOptions& options) { return format_of(options).bytes; }
 
 Framebuffer msaa_framebuffer(const MsaaOptions& options) {
   const auto n = static_cast<std::uint32_t>(options.samples);
   std::vector<Surface> surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
-                                   {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}};
+                                   {"color", times(format_of(options).name, n), n * color_bytes(options)}};
   if (options.motion) surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
   return {.surfaces = surfaces, .bin_size = bin_size(options.samples)};
 }
@@ -33,7 +53,7 @@ void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& len
 }
 
 FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
-  const FrameContext context(job, {.derivatives = Derivatives::quad, .rounds_to_half = true});
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .stored_as = format_of(options).channel});
   const Sampling sampling = msaa_sampling(options.samples);
   History first;
   History& history = job.run.history ? *job.run.history : first;
@@ -69,7 +89,7 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
   constexpr auto kAll = SampleRasterUnit::Translucent::drawn;
   const Sampling& sampling = depth_test.sampling();
   SampleRasterUnit raster(bin, kAll, options.alpha);
-  SampleShadeUnit shade(bin, sampling, options.at);
+  SampleShadeUnit shade(bin, sampling, options.at, color_bytes(options));
   shade.counts_centroids();
   depth_test.shade_translucent_at(options.at);
 
@@ -103,7 +123,12 @@ TechniqueKind msaa_kind() {
           [](MsaaOptions& o) -> SpecOptions {
             return {
                 samples(o.samples, kMaxMsaaSamples, "samples per pixel"),
-                choice("color", o.rgba, {{"rgb16f", false}, {"rgba16f", true}}, "format of a sample's colour"),
+                choice("color", o.color,
+                       {{"rgb16f", SampleColor::rgb16f},
+                        {"rgba16f", SampleColor::rgba16f},
+                        {"rgba8", SampleColor::rgba8},
+                        {"rgba32f", SampleColor::rgba32f}},
+                       "format of a sample's colour"),
                 choice("at", o.at, {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}},
                        "shading point when the centre is uncovered: the centre anyway, or the centroid of the covered "
                        "samples"),
@@ -122,6 +147,7 @@ TechniqueKind msaa_kind() {
                              .samples = static_cast<std::uint32_t>(o.samples),
                              .sampled_at = places_of(msaa_sampling(o.samples)),
                              .errs_by = {ErrorSource::sampled_depth},
+                             .rounding_error = o.color == SampleColor::rgba8 ? 0.5 / 255 : kFp16Error,
                              .renderer = bind_options(render_msaa, o),
                              .is_observable = true,
                              .keeps_history = o.motion};

@@ -19,9 +19,12 @@ namespace beampipe {
 
 inline constexpr int kMaxMsaaSamples = 1024;
 
+// The format of a sample's colour. rgba16f: 12 bytes per sample with depth, as in the ACAA talk.
+enum class SampleColor { rgb16f, rgba16f, rgba8, rgba32f };
+
 struct MsaaOptions {
   int samples = 1;
-  bool rgba = false;  // fp16 RGBA samples instead of RGB: 12 bytes per sample with depth, as in the ACAA talk
+  SampleColor color = SampleColor::rgb16f;
   ShadeAt at = ShadeAt::centre;
   AlphaCoverage alpha = AlphaCoverage::test;
   bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.

@@ -21,7 +21,7 @@ ShadingRules rules_of(TaaShading shading) {
     case TaaShading::deferred:
       return {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer};
     case TaaShading::forward:
-      return {.derivatives = Derivatives::quad, .rounds_to_half = true};
+      return {.derivatives = Derivatives::quad, .stored_as = AccumulatorFormat::fp16};
   }
   return {};
 }

@@ -112,13 +112,14 @@ class ShadeUnit {
 // Forward shading of sample fragments in primitive order, in 2x2 quads.
 class SampleShadeUnit {
  public:
-  // `sampling` must outlive the pass.
-  SampleShadeUnit(Bin& bin, const Sampling& sampling, ShadeAt at)
+  // `sampling` must outlive the pass. `color_bytes`: of the colour that goes on.
+  SampleShadeUnit(Bin& bin, const Sampling& sampling, ShadeAt at, std::uint32_t color_bytes = kColorBytes)
       : bin_(bin),
         stage_(bin.stage(StageId::shade)),
         in_order_(bin.memory(), bin.surface_fetches()),
         sampling_(&sampling),
-        at_(at) {}
+        at_(at),
+        color_bytes_(color_bytes) {}
 
   // Counts, per pixel, the fragments that are shaded at the centroid and not at the centre.
   void counts_centroids() {
@@ -126,7 +127,7 @@ class SampleShadeUnit {
   }
 
   void operator()(const std::vector<SampleFragment>& fragments) {
-    shade(bin_.shader(), fragments, stage_.timed());
+    shade(bin_.shader(), fragments, color_bytes_, stage_.timed());
     if (TexelRequests* const texels = bin_.texels())
       SamplePlaces(bin_, *sampling_, at_).add_quad_texels(fragments, *texels);
     bin_.charge_texels(stage_);
@@ -147,6 +148,7 @@ class SampleShadeUnit {
   AttributesInOrder in_order_;
   const Sampling* sampling_;
   ShadeAt at_;
+  std::uint32_t color_bytes_;
   std::vector<float>* centroids_ = nullptr;
 };
 

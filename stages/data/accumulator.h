@@ -24,7 +24,7 @@ inline float rounded_to(AccumulatorFormat format, float value) {
     case AccumulatorFormat::unorm8:
       return std::floor(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f) / 255.0f;
     case AccumulatorFormat::fp16:
-      return HalfBits(value);
+      return rounded_to_half(value);
     default:
       return value;
   }

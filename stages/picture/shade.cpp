@@ -39,8 +39,9 @@ void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& 
   charge(one_by_one(shader, shaded, whole_shader), kPairBytes, kColorBytes, counters);
 }
 
-void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters) {
-  charge(in_quads(shader, fragments, whole_shader), kSampleFragmentBytes, kColorBytes, counters);
+void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, std::uint32_t color_bytes,
+           StageCounters& counters) {
+  charge(in_quads(shader, fragments, whole_shader), kSampleFragmentBytes, color_bytes, counters);
 }
 
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,

@@ -38,8 +38,9 @@ void shade_visible(const TileShader& shader, const std::vector<Pair>& whole, Sta
 void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& shaded, StageCounters& counters);
 
 // Only charges the shading of sample fragments, in 2x2 quads. Samples keep their triangle's index instead of a colour,
-// because it and the pixel say where the triangle is shaded.
-void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters);
+// because it and the pixel say where the triangle is shaded. `color_bytes`: of the colour that goes on.
+void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, std::uint32_t color_bytes,
+           StageCounters& counters);
 
 // Sets the colours of shading samples of quads, which are the tile's, row by row, in the given order: 4 q + p is sample
 // p of quad q, and extra samples follow those of all quads. Charges nothing. `pattern`: of the visibility samples.

@@ -51,9 +51,8 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
     if (observer) observer->contends(fragment.triangle, first, access.tested & ~access.passed, 0);
     accesses.push_back(access);
   }
-  constexpr std::uint32_t kChannelBytes = 2;  // fp16
-  charge_blend(fragments.list.size(), counts, surface.color_bytes / kChannelBytes, surface.color_bytes,
-               sampling.pattern, counters);
+  const std::uint32_t channels = surface.color_bytes == kSampleColorBytes ? 3 : 4;
+  charge_blend(fragments.list.size(), counts, channels, surface.color_bytes, sampling.pattern, counters);
 }
 
 void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,

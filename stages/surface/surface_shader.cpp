@@ -222,8 +222,8 @@ Reflector<float> through_gbuffer(Reflector<float> surface) {
 // Alpha that is extrapolated beyond the triangle may leave 0..1. What is not a number becomes 1.
 float limited_alpha(float alpha) { return greater(lesser(alpha, 1.0f), 0.0f); }
 
-void round_to_half(glm::vec3& color) {
-  for (int c = 0; c < 3; ++c) color[c] = rounded_to_half(color[c]);
+void round_to(AccumulatorFormat format, glm::vec3& color) {
+  for (int c = 0; c < 3; ++c) color[c] = rounded_to(format, color[c]);
 }
 
 }  // namespace
@@ -243,9 +243,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
       textures_(textures),
       rules_(rules),
       flat_(shade_triangles(triangles, frame.lighting)) {
-  if (rules.colors == SurfaceColors::by_pixel) rules_.rounds_to_half = false;
-  if (rules_.rounds_to_half)
-    for (glm::vec3& color : flat_) round_to_half(color);
+  if (rules.colors == SurfaceColors::by_pixel) rules_.stored_as = AccumulatorFormat::fp32;
+  for (glm::vec3& color : flat_) round_to(rules_.stored_as, color);
   flat_unlit_.input_bytes = flat_lit_.input_bytes = sizeof(FlatAttributes);
   flat_lit_.light = flat_light_cost(frame.lighting);
   if (is_flat()) return;
@@ -425,7 +424,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   if (is_stored(material)) found.reflector = through_gbuffer(found.reflector);
   const Triple<float> lit = lit_color(material, found, frame_.lighting);
   glm::vec3 color(lit[0], lit[1], lit[2]);
-  if (rules_.rounds_to_half) round_to_half(color);
+  round_to(rules_.stored_as, color);
   if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
   return {color, by_pixel ? alpha(triangle, place, width) : limited_alpha(found.alpha)};
 }
@@ -448,7 +447,7 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       glm::vec3& color = colors[batch.places[i]];
       color = lit[i];
-      if (rules_.rounds_to_half) round_to_half(color);
+      round_to(rules_.stored_as, color);
     }
     batch.invocations.clear();
     batch.places.clear();

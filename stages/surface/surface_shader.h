@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "stages/cost/counters.h"
+#include "stages/data/accumulator.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 #include "stages/surface/opacity.h"
@@ -48,7 +49,7 @@ enum class SurfaceColors { by_place, by_pixel };
 struct ShadingRules {
   Derivatives derivatives = Derivatives::analytic;
   MaterialStorage storage = MaterialStorage::none;
-  bool rounds_to_half = false;  // colours are stored as fp16
+  AccumulatorFormat stored_as = AccumulatorFormat::fp32;  // colours are rounded to it
   SurfaceColors colors = SurfaceColors::by_place;
   bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };

@@ -67,7 +67,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"msaa:N has no option '16'; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,16"}},
       {"msaa:N has no option ''; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,"}},
       {"msaa:N has no option 'N'; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,N=8"}},
-      {"color must be rgb16f or rgba16f", {"msaa:8,color=rgb8", "msaa:8,color"}},
+      {"color must be rgb16f, rgba16f, rgba8 or rgba32f", {"msaa:8,color=rgb8", "msaa:8,color"}},
       {"at must be centre or centroid", {"msaa:8,at=corner"}},
       {"'prepass' is there twice", {"msaa:8,prepass,prepass"}},
       {"prepass must be without a value", {"msaa:8,prepass=1"}},

@@ -7,8 +7,8 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/hardware_options.h"
 #include "tools/evaluate/energy.h"
-#include "tools/evaluate/remodel.h"
 #include "tools/report/energy_text.h"
+#include "tools/report/finished_run.h"
 #include "tools/report/report_file.h"
 #include "tools/report/times_text.h"
 
@@ -23,21 +23,12 @@ struct ModelArguments {
 };
 
 Report model(const std::string& folder, const Hardware* other, const ModelArguments& arguments) {
-  const ReportFile file = read_report(folder);
-  const std::string name = (file.folder / "report.json").string();
-  if (!file.json.contains("hardware"))
-    throw ReportError(name + ": expected a run whose times can be modelled, found one without hardware");
-  try {
-    Report report = read_from_report(file.folder, [&] { return remodelled(file.json, other); });
-    if (!report.memory.modelled)
-      throw ReportError(name + ": expected a run that modelled memory, found one with --no-memory-model");
-    report.hardware = with_costs(report.hardware, arguments.hardware);
-    if (arguments.energy && !has_energy(report.hardware))
-      throw ReportError(name + ": --energy: expected hardware with \"energy\", found none in " + report.hardware.named);
-    return report;
-  } catch (const OtherMemory& error) {
-    throw ReportError(name + ": " + error.what());
-  }
+  Report report = finished_run(folder, other);
+  report.hardware = with_costs(report.hardware, arguments.hardware);
+  if (arguments.energy && !has_energy(report.hardware))
+    throw ReportError((std::filesystem::path(folder) / "report.json").string() +
+                      ": --energy: expected hardware with \"energy\", found none in " + report.hardware.named);
+  return report;
 }
 
 void model(const ModelArguments& arguments) {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "tools/cli/commands.h"
-#include "tools/files/output.h"
+#include "tools/cli/plot_file.h"
 #include "tools/report/gnuplot.h"
 #include "tools/report/plot.h"
 
@@ -17,12 +17,6 @@ struct PlotArguments {
   std::vector<std::string> folders;
   std::string output, kind = "frontier";
 };
-
-PlotFormat format_of(const std::filesystem::path& file) {
-  if (file.extension() == ".svg") return PlotFormat::svg;
-  if (file.extension() == ".png") return PlotFormat::png;
-  throw UsageError("--output " + file.string() + ": expected a name that ends in .svg or .png");
-}
 
 // What needs no errors, and so can be drawn of the folders of `run` as well.
 std::string traffic_picture(const std::vector<ReportFile>& reports, PlotFormat format) {
@@ -48,14 +42,12 @@ std::string error_picture(const std::string& kind, const std::vector<ReportFile>
 
 void plot(const PlotArguments& arguments, InterruptGate& gate) {
   const std::filesystem::path file = arguments.output;
-  const PlotFormat format = format_of(file);
+  const PlotFormat format = plot_format(file);
   std::vector<ReportFile> reports;
   for (const std::string& folder : arguments.folders) reports.push_back(read_report(folder));
   const std::string picture =
       arguments.kind == "traffic" ? traffic_picture(reports, format) : error_picture(arguments.kind, reports, format);
-  OutputFolder output(std::filesystem::absolute(file).parent_path(), gate);
-  output.write(file.filename(), picture);
-  output.keep();
+  write_plot(file, picture, gate);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ void add_plot_command(CommandLine& line, InterruptGate& gate);
 void add_claims_command(CommandLine& line);
 void add_counters_command(CommandLine& line);
 void add_model_command(CommandLine& line);
+void add_correlate_command(CommandLine& line, InterruptGate& gate);
 void add_sweep_command(CommandLine& line, InterruptGate& gate);
 void add_stress_command(CommandLine& line, InterruptGate& gate);
 void add_inspect_command(CommandLine& line, InterruptGate& gate);

@@ -61,6 +61,7 @@ int run(int argc, char** argv, InterruptGate& gate) {
   add_claims_command(line);
   add_counters_command(line);
   add_model_command(line);
+  add_correlate_command(line, gate);
   add_sweep_command(line, gate);
   add_stress_command(line, gate);
   add_inspect_command(line, gate);

@@ -131,10 +131,11 @@ std::vector<std::string> hardware_names() {
 
 const std::vector<form::Key>& hardware_rates() {
   static const std::vector<form::Key> all = {
-      {"triangles_per_clk", "Triangles that are set up."},
+      {"triangles_per_clk", "Triangles that are set up; and, in their bins, rasterized."},
       {"raster_pixels_per_clk", "Pixels (or cells) that the sample raster finds."},
       {"conservative_pixels_per_clk", "Pixels that the conservative raster touches."},
       {"quads_per_clk", "2x2 quads of pixels that shading is started for."},
+      {"export_bytes_per_clk", "Bytes of shaded colours that the cores hand on and the ROPs take."},
       {"issue_per_clk", "Operations that the shader cores issue, of any kind."},
       {"mul_add_per_clk", "Multiplications and additions of floats."},
       {"add_per_clk", "Additions and comparisons."},

@@ -11,7 +11,7 @@ namespace beampipe {
 namespace {
 
 using Rates = std::map<std::string, double>;
-constexpr const char *kL2 = "l2", *kDram = "dram";
+constexpr const char *kL2 = "l2", *kDram = "dram", *kExport = "export";
 
 struct StageWork : StageCounters {
   bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
@@ -50,13 +50,19 @@ const std::map<std::string, Clocks>& units() {
       {"triangles",
        [](const Rates& rates, const StageWork& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
       {"raster",
-       [](const Rates& rates, const StageWork& s) { return over(s.items_out, rates.at("raster_pixels_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) {
+         return std::max(over(s.items_in, rates.at("triangles_per_clk")),
+                         over(s.items_out, rates.at("raster_pixels_per_clk")));
+       }},
       {"conservative_raster",
        [](const Rates& rates, const StageWork& s) {
-         return over(s.lanes_used, rates.at("conservative_pixels_per_clk"));  // touched pixels, hidden ones included
+         return std::max(over(s.items_in, rates.at("triangles_per_clk")),
+                         over(s.lanes_used, rates.at("conservative_pixels_per_clk")));  // with hidden pixels
        }},
       {"quads",
        [](const Rates& rates, const StageWork& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
+      {kExport,
+       [](const Rates& rates, const StageWork& s) { return over(s.bytes_written, rates.at("export_bytes_per_clk")); }},
       {"shader", shader_clocks},
       {"shading", shader_clocks},
       {"texture",
@@ -112,10 +118,16 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
   return priced;
 }
 
+// What a stage needs to know of the frame's other stages.
+struct FrameKind {
+  bool has_light = false;
+  bool has_rops = true;  // the colours that are shaded go to ROPs
+};
+
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
-                                       const StageCounters& unpriced, bool has_light, double bin_bytes) {
+                                       const StageCounters& unpriced, const FrameKind& frame, double bin_bytes) {
   double registers = 0;
-  const StageWork stage{with_costs(hardware, unpriced, has_light, registers), bin_bytes > 0};
+  const StageWork stage{with_costs(hardware, unpriced, frame.has_light, registers), bin_bytes > 0};
   const Rates& rates = hardware.rates;
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
   std::map<std::string, double> times;
@@ -123,6 +135,7 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   bool on_chip = false;
   if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
     for (const std::string& unit : found->second) unit == kOnChipMark ? static_cast<void>(on_chip = true) : use(unit);
+  if (!frame.has_rops) times.erase(kExport);
   if (const auto shading = times.find("shading"); shading != times.end())
     shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
   if (on_chip && bin_bytes > 0)
@@ -133,8 +146,19 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   return times;
 }
 
-bool has_light(const std::vector<StageCounters>& stages) {
-  return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage.id == StageId::light; });
+bool has_stage(const std::vector<StageCounters>& stages, StageId id) {
+  return std::any_of(stages.begin(), stages.end(), [id](const auto& s) { return s.stage.id == id; });
+}
+
+// Does the implementation do any of these stages in ROPs?
+bool has_rops(const Implementation& implementation, const std::vector<StageCounters>& stages) {
+  const auto is_rop = [](const std::string& unit) {
+    return unit == "rop_samples" || unit == "rop_fragments" || unit == "composer";
+  };
+  return std::any_of(stages.begin(), stages.end(), [&](const StageCounters& stage) {
+    const auto found = implementation.units.find(stage.stage.id);
+    return found != implementation.units.end() && std::any_of(found->second.begin(), found->second.end(), is_rop);
+  });
 }
 
 void add_times(std::map<std::string, double>& busy, const std::map<std::string, double>& times) {
@@ -166,7 +190,7 @@ std::vector<std::string> unit_names() {
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage, double bin_bytes) {
-  return times_of(hardware, implementation, stage, false, bin_bytes);
+  return times_of(hardware, implementation, stage, {}, bin_bytes);
 }
 
 std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes) {
@@ -191,16 +215,17 @@ double imbalance(std::span<const std::uint64_t> bin_operations, std::uint32_t co
 std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vector<StageCounters>& stages) {
   std::vector<StageCounters> priced;
   double registers = 0;
-  for (const StageCounters& stage : stages) priced.push_back(with_costs(hardware, stage, has_light(stages), registers));
+  for (const StageCounters& stage : stages)
+    priced.push_back(with_costs(hardware, stage, has_stage(stages, StageId::light), registers));
   return priced;
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work) {
-  const bool is_lit_apart = has_light(work.stages);
+  const FrameKind frame{has_stage(work.stages, StageId::light), has_rops(implementation, work.stages)};
   ModelledTime time;
   std::map<std::string, double> before, of_bins;
   for (const StageCounters& stage : work.stages) {
-    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, is_lit_apart, work.bin_bytes);
+    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, frame, work.bin_bytes);
     if (const auto shading = of_stage.extract("shading"))  // the same lanes
       of_stage["shader"] = std::max(of_stage["shader"], shading.mapped());
     add_times(stage.stage.id == StageId::vertex_setup ? before : of_bins, of_stage);

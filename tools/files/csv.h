@@ -1,13 +1,26 @@
-// Fields of CSV files.
+// Fields of CSV files, by RFC 4180.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "traces/files/json.h"
 
 namespace beampipe {
 
-// A value as a field by RFC 4180: in quotes where it has to be; null is empty.
+// A value as a field: in quotes where it has to be; null is empty.
 std::string csv_field(const Json& value);
+
+struct CsvRow {
+  std::size_t line = 0;  // where it starts, from 1
+  std::vector<std::string> fields;
+};
+
+// The rows below a header, each with as many fields as that. Empty lines are left out. Throws TraceError, one line that
+// names file and line, if the file cannot be read, has another header, or a row has another number of fields or quotes
+// that do not end.
+std::vector<CsvRow> read_csv(const std::filesystem::path& file, const std::vector<std::string>& header);
 
 }  // namespace beampipe

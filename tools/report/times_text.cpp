@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/mean_times.h"
 #include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/sensitivity.h"
 #include "tools/files/format.h"
@@ -25,12 +26,8 @@ std::string interval_text(const Interval& interval, std::string (*text)(double))
 
 std::string ratio_text(double ratio) { return format("%.2f", ratio); }
 
-// The mean over the frames.
 double mean_sum_ms(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result) {
-  double sum = 0;
-  for (const FrameReport& frame : result.frames)
-    sum += modelled_time(hardware, hardware.implementations[implementation], frame.work()).sum_ms;
-  return sum / static_cast<double>(result.frames.size());
+  return mean_times(hardware, implementation, result).sum_ms;
 }
 
 std::vector<double> mean_sums_ms(const std::vector<Hardware>& all, std::size_t implementation,

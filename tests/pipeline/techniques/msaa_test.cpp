@@ -1,6 +1,7 @@
 // Multisampling: samples that can be counted by hand, where fragments are shaded, and pictures.
 
 #include "pipeline/technique.h"
+#include "stages/data/half_bits.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 #include "tests/test.h"
@@ -43,6 +44,23 @@ TEST(Msaa, ADepthPassDoesNotChangeThePicture) {
   for (const char* n : {"1", "8", "64"})
     EXPECT_EQ(render(std::string("msaa:").append(n), trace).image.rgba,
               render(std::string("msaa:").append(n).append(",prepass"), trace).image.rgba);
+}
+
+// One pixel is covered. Its colour is stored with the depth, and handed on with as many bytes.
+TEST(Msaa, ColoursAreStoredInTheirFormat) {
+  const Trace trace = pixel_trace(1, 1, quad(-1, -1, 2, 2, 0.5, glm::vec3(0.1f, 0.3f, 0.7f)));
+  const auto red = [&](const std::string& format) { return render("msaa:1,color=" + format, trace).image.rgba.at(0); };
+  const float exact = red("rgba32f");
+  EXPECT_EQ(red("rgba8"), std::round(exact * 255) / 255.0f);
+  EXPECT_EQ(red("rgba16f"), nearest_half(exact));
+  EXPECT_NE(red("rgba16f"), exact);
+  for (const auto& [format, bytes] : {std::pair{"rgb16f", 6u}, {"rgba16f", 8u}, {"rgba8", 4u}, {"rgba32f", 16u}}) {
+    const std::string spec = std::string("msaa:1,color=") + format;
+    const FrameResult result = parse_technique(spec).render(trace, 0, {1});
+    EXPECT_EQ(stage_of(result, "depth_test").bytes_written, stage_of(result, "depth_test").items_out * (4 + bytes));
+    EXPECT_EQ(stage_of(result, "shade").bytes_written, stage_of(result, "shade").items_in * bytes) << spec;
+    EXPECT_EQ(parse_technique(spec).framebuffer_bytes_per_pixel(), 4 + bytes);
+  }
 }
 
 // A square moves by 2.5 pixels to the right in front of a wall that stands still. In the first frame nothing is known

@@ -61,7 +61,7 @@ TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
     std::vector<SampleFragment> samples = sample_fragments(triangles, tile, {CellGrid{}, standard_pattern(8)});
     StageCounters of_fragments, of_samples;
     shade(colors, fragments.list, of_fragments);
-    shade(colors, samples, of_samples);
+    shade(colors, samples, kColorBytes, of_samples);
     for (const StageCounters& counters : {of_fragments, of_samples}) {
       EXPECT_EQ(counters.lanes_used, used);
       EXPECT_EQ(counters.lanes_issued, issued);
@@ -77,7 +77,7 @@ TEST(Shade, HalfRounding) {
   const Trace trace;
   const Frame frame;
   const std::vector<glm::vec3> found =
-      SurfaceShader(triangles, trace, frame, nullptr, {.rounds_to_half = true}).flat_colors();
+      SurfaceShader(triangles, trace, frame, nullptr, {.stored_as = AccumulatorFormat::fp16}).flat_colors();
   EXPECT_EQ(found[0], glm::vec3(1.0f, 1.0f + 0x1p-10f, 65504.0f));
   EXPECT_NEAR(found[1].x, 0.1f, 0.1f * 0x1p-11f);
   EXPECT_NE(found[1].x, 0.1f);

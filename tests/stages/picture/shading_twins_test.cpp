@@ -73,7 +73,8 @@ TEST_P(ShadingTwins, ShadeFragmentsInQuads) {
 TEST_P(ShadingTwins, ShadeSampleFragmentsInQuads) {
   const std::vector<SampleFragment> fragments = sample_fragments(triangles_, tile_, kSampling);
   StageCounters counters;
-  shade({*surfaces_, tile_}, fragments, counters);
+  shade({*surfaces_, tile_}, fragments, 16, counters);
+  EXPECT_EQ(counters.bytes_written, 16 * fragments.size());
   EXPECT_EQ(counters.lanes_issued, shade_quads(fragments));
   EXPECT_EQ(counters.ops, twin_);
 }

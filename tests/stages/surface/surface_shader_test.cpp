@@ -364,7 +364,7 @@ TEST(SurfaceShader, AGBufferRounds) {
 TEST(SurfaceShader, ColorsAreRoundedToHalf) {
   SurfaceTrace scene(8, 8);
   scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(filled_image(2, 2, {100, 200, 30, 255}))));
-  const ShadedScene exact(scene.trace), half(scene.trace, {.rounds_to_half = true});
+  const ShadedScene exact(scene.trace), half(scene.trace, {.stored_as = AccumulatorFormat::fp16});
   const glm::vec3 a = exact.shader.color(0, {3, 4}), b = half.shader.color(0, {3, 4});
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(a[c], b[c], a[c] * 0x1p-11f);
@@ -408,8 +408,9 @@ TEST(SurfaceShader, SideBySideColorsAreTheSame) {
   Random random(2);
   const SurfaceTrace materials = all_kinds_of_materials(random);
   for (const ShadingRules& rules :
-       {ShadingRules{}, ShadingRules{.derivatives = Derivatives::quad}, ShadingRules{.rounds_to_half = true},
-        ShadingRules{.storage = MaterialStorage::gbuffer}, ShadingRules{.colors = SurfaceColors::by_pixel}}) {
+       {ShadingRules{}, ShadingRules{.derivatives = Derivatives::quad},
+        ShadingRules{.stored_as = AccumulatorFormat::fp16}, ShadingRules{.storage = MaterialStorage::gbuffer},
+        ShadingRules{.colors = SurfaceColors::by_pixel}}) {
     const ShadedScene scene(materials.trace, rules);
     // Runs of a few invocations of one triangle, at places that need not be in it.
     std::vector<Invocation> invocations;

@@ -22,12 +22,38 @@ TEST(ModelledTime, TimeIsWorkOverRate) {
   const Hardware titan = titan_v();
   const Implementation& shaders = titan.implementations.at(0);
   const auto raster = unit_times(titan, shaders, stage(StageId::sample_raster));
-  EXPECT_NEAR(clocks(titan, raster.at("triangles")), 1000, 1e-6);
-  EXPECT_NEAR(clocks(titan, raster.at("raster")), 100, 1e-6);
+  EXPECT_NEAR(clocks(titan, raster.at("raster")), 1000, 1e-6);
   EXPECT_NEAR(clocks(titan, raster.at("l2")), 3, 1e-6);
   EXPECT_NEAR(clocks(titan, raster.at("dram")), 10, 1e-3);
   EXPECT_FALSE(raster.contains("shader"));
   EXPECT_NEAR(clocks(titan, unit_times(titan, shaders, stage(StageId::compose)).at("shader")), 2, 1e-6);
+}
+
+// 3840 bytes of colours at 384 per clock, where ROPs follow. Composition in shaders keeps its colours, that in ROPs
+// does not.
+TEST(ModelledTime, ColoursGoToRops) {
+  const Hardware titan = titan_v();
+  StageCounters shade{StageId::shade};
+  shade.bytes_written = 3840;
+  const auto of = [&](StageId last, std::size_t implementation) {
+    const std::vector<StageCounters> stages = {shade, StageCounters{last}};
+    return clocks(titan, modelled_time(titan, titan.implementations.at(implementation), {stages}).sum_ms);
+  };
+  EXPECT_NEAR(of(StageId::depth_test, 0), 10, 1e-6);
+  EXPECT_NEAR(of(StageId::accumulate, 0), 10, 1e-6);
+  EXPECT_NEAR(of(StageId::compose, 0), 3840.0 / 10240, 1e-6);
+  EXPECT_NEAR(of(StageId::compose, 1), 10, 1e-6);
+}
+
+// A picture of small triangles takes as long as their setup; rasterizing them has units of its own.
+TEST(ModelledTime, SetupAndRasterTakeTurnsOnlyInTurn) {
+  const Hardware titan = titan_v();
+  StageCounters setup{StageId::vertex_setup}, raster{StageId::sample_raster};
+  setup.items_in = raster.items_in = 6000, raster.items_out = 3000;
+  const std::vector<StageCounters> stages = {setup, raster};
+  const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {stages});
+  EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
+  EXPECT_NEAR(clocks(titan, time.sum_ms), 2000, 1e-6);
 }
 
 TEST(ModelledTime, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
@@ -37,11 +63,11 @@ TEST(ModelledTime, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {stages});
   EXPECT_NEAR(clocks(titan, time.sum_ms), 1000 + 10 + 10, 1e-3);
   EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
-  EXPECT_EQ(time.busiest, "triangles");
+  EXPECT_EQ(time.busiest, "raster");
   ASSERT_EQ(time.stages.size(), 3u);
   EXPECT_EQ(time.stages[1].stage, StageId::compose);
   EXPECT_NEAR(clocks(titan, time.stages[1].ms), 10, 1e-3);
-  EXPECT_EQ(time.stages[0].busiest, "triangles");
+  EXPECT_EQ(time.stages[0].busiest, "raster");
   EXPECT_EQ(time.stages[1].busiest, "dram");
 }
 

@@ -29,8 +29,9 @@ def unit_clocks(unit, stage, rates, on_chip):
                    (logical - stage["texture_bytes"]) / rates["on_chip_bytes_per_clk"])
     works = {
         "triangles": [("items_in", "triangles_per_clk")],
-        "raster": [("items_out", "raster_pixels_per_clk")],
-        "conservative_raster": [("lanes_used", "conservative_pixels_per_clk")],
+        "raster": [("items_in", "triangles_per_clk"), ("items_out", "raster_pixels_per_clk")],
+        "conservative_raster": [("items_in", "triangles_per_clk"), ("lanes_used", "conservative_pixels_per_clk")],
+        "export": [("bytes_written", "export_bytes_per_clk")],
         "texture": [("texture_bytes", "texture_bytes_per_clk")],
         "mask_generator": [("items_in", "conservative_pixels_per_clk"), ("position_tests", "mask_positions_per_clk")],
         "composer": [("items_in", "rop_fragments_per_clk"), ("position_tests", "compose_positions_per_clk")],
@@ -80,11 +81,16 @@ class ModelledTimesTest(unittest.TestCase):
             held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), memory["bins_per_core"]), 1)
             for way, implementation in hardware["implementations"].items():
                 before, of_bins, in_turn = {}, {}, 0
+                units_of = {stage["stage"]: implementation["units"][stage["stage"].removeprefix("prepass_")]
+                            for stage in frame["stages"]}
+                used = {unit for units in units_of.values() for unit in units}
+                has_rops = used & {"rop_samples", "rop_fragments", "composer"}
+                not_there = {"on_chip"} if has_rops else {"on_chip", "export"}
                 for stage in frame["stages"]:
-                    units = implementation["units"][stage["stage"].removeprefix("prepass_")]
+                    units = units_of[stage["stage"]]
                     stall = memory["bins_per_core"] / held if "on_chip" in units and bin_bytes else 1
                     times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0) / clocks_per_ms * stall
-                             for unit in units if unit != "on_chip"}
+                             for unit in units if unit not in not_there}
                     times |= {unit: unit_clocks(unit, stage, rates, False) / clocks_per_ms for unit in ("l2", "dram")}
                     if "shading" in times:
                         times["shader"] = max(times.pop("shading"), times.get("shader", 0))

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli/program_fixture.h"
+#include "tools/evaluate/hardware.h"
 
 namespace beampipe::command_sweep_test {
 

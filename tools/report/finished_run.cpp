@@ -1,0 +1,23 @@
+#include "tools/report/finished_run.h"
+
+#include "tools/evaluate/remodel.h"
+#include "tools/report/report_file.h"
+
+namespace beampipe {
+
+Report finished_run(const std::filesystem::path& folder, const Hardware* other) {
+  const ReportFile file = read_report(folder);
+  const std::string name = (file.folder / "report.json").string();
+  if (!file.json.contains("hardware"))
+    throw ReportError(name + ": expected a run whose times can be modelled, found one without hardware");
+  try {
+    Report report = read_from_report(file.folder, [&] { return remodelled(file.json, other); });
+    if (!report.memory.modelled)
+      throw ReportError(name + ": expected a run that modelled memory, found one with --no-memory-model");
+    return report;
+  } catch (const OtherMemory& error) {
+    throw ReportError(name + ": " + error.what());
+  }
+}
+
+}  // namespace beampipe
