@@ -86,7 +86,8 @@ struct FrameResult {
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;   // all but the A-buffer
   std::uint32_t bin_pixels = 0;  // of the largest bin
-  // Of all stages of each bin, in the order in which bins are drawn, row by row: how unevenly the work is spread.
+  // Of the stages of each bin that can be done in shaders, in the order in which bins are drawn, row by row: how
+  // unevenly the work of cores is spread.
   std::vector<std::uint64_t> bin_operations;
   CacheReach cache_reach;
 };

@@ -214,7 +214,7 @@ mutants=(  # file | text as it is | broken
   'tools/evaluate/modelled_time.cpp|4 * rates.at("quads_per_clk")|rates.at("quads_per_clk")'
   'tools/evaluate/modelled_time.cpp|std::min(room, static_cast<double>(memory.bins_per_core))|room'
   'tools/evaluate/modelled_time.cpp|free_at.top() + operations|operations'
-  'tools/evaluate/modelled_time.cpp|unit == kDram ? ms : ms|unit == kL2 ? ms : ms'
+  'tools/evaluate/modelled_time.cpp|is_of_cores(unit) ? ms * times_longer : ms|ms * times_longer'
   'tools/evaluate/modelled_time.cpp|return busiest_of(before).second + longest|return longest'
   'tools/evaluate/sensitivity.cpp|(values.size() + 19) / 20 - 1|values.size() / 20'
   'tools/evaluate/sensitivity.cpp|std::pow(range.high / range.low, part)|(1 + part * (range.high / range.low - 1))'

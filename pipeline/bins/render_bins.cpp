@@ -208,7 +208,8 @@ class FrameRecorder {
  private:
   // `has_counts`, `has_picture`: are the pixel counters and the picture other than what the frame starts with?
   void add(const Bin& bin, const Tile& tile, std::size_t index, bool has_counts, bool has_picture) {
-    for (const StageCounters& stage : bin.stages()) result_.bin_operations[index] += stage.ops.total();
+    for (const StageCounters& stage : bin.stages())
+      if (info_of(stage.stage.id).can_be_shader) result_.bin_operations[index] += stage.ops.total();
     kept_in_l2_[index] = bin.kept_in_l2();
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {

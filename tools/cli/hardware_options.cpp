@@ -43,6 +43,11 @@ Hardware read_hardware(const HardwareOptions& options) {
   return with_costs(read_hardware(options.hardware.empty() ? hardware_names().front() : options.hardware), options);
 }
 
+std::string shading_options(const HardwareOptions& options) {
+  return (options.material_cost.empty() ? "" : " --material-cost " + options.material_cost) +
+         (options.light_cost.empty() ? "" : " --light-cost " + options.light_cost);
+}
+
 Hardware with_costs(const Hardware& hardware, const HardwareOptions& options) {
   if (options.material_cost.empty() && options.light_cost.empty()) return hardware;
   const auto cost = [](const std::string& option, const std::string& text, const ShadingCost& described) {

@@ -21,6 +21,9 @@ void add_hardware_options(Command& command, HardwareOptions& options, const std:
 // What --hardware names, or titan_v. Throws UsageError, or what reading a description throws.
 Hardware read_hardware(const HardwareOptions& options);
 
+// " --material-cost 200,4": the options that add to what shading costs.
+std::string shading_options(const HardwareOptions& options);
+
 // The same hardware with the costs that the options name.
 Hardware with_costs(const Hardware& hardware, const HardwareOptions& options);
 

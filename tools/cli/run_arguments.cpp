@@ -113,6 +113,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.repeat = arguments.repeat;
   plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
   plan.hardware = read_hardware(arguments.hardware);
+  plan.shading_options = shading_options(arguments.hardware);
   plan.options.memory = plan.hardware.memory = memory_of(arguments, plan.hardware);
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);

@@ -204,7 +204,7 @@ Form<FrameOf> make_frame_form() {
                "The largest size of the A-buffer.")
       .written("bin_pixels", member(&Frame::bin_pixels), form::count(), "Pixels of the largest bin.")
       .written("bin_operations", filled(&Frame::bin_operations), form::list(form::count()),
-               "Operations of all stages of each bin, row by row.");
+               "Operations of each bin in stages that can be done in shaders, row by row.");
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
     for (const CounterInfo& counter : stage_counters())
       if (counter.name == std::string_view(column))

@@ -57,7 +57,7 @@ struct FrameReport {
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
   std::uint64_t bin_pixels = 0;               // of the largest bin
-  std::vector<std::uint64_t> bin_operations;  // of each bin, in the order in which they are drawn
+  std::vector<std::uint64_t> bin_operations;  // as in FrameResult
 
   // What the pixels of a bin take on chip; 0 if they are in memory.
   double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }

@@ -14,7 +14,6 @@ namespace {
 
 using UnitsOfStages = decltype(Implementation::units);
 
-constexpr double kLeastRate = 1e-6, kMostRate = 1e12;  // so that no time or quotient becomes infinite
 constexpr const char* kSource = "where the number is from, or that it is a choice";
 
 Form<ShadingCost> cost_form() {
@@ -26,14 +25,20 @@ Form<ShadingCost> cost_form() {
                 "Registers that an invocation takes; the fewer invocations fit, the slower they are.");
 }
 
-// Can the unit do the stage's work? The counters of other stages would say nothing to it. Textures and the rate of
-// triangles and quads serve both kinds of stages.
-bool can_do(const std::string& unit, const StageInfo& stage) {
-  if (unit == "shader" || unit == "shading") return stage.can_be_shader;
+bool is_shader(const std::string& unit) { return unit == "shader" || unit == "shading"; }
+
+bool is_fixed_function(const std::string& unit) {
   for (const char* const each :
        {"raster", "conservative_raster", "mask_generator", "sorter", "composer", "rop_samples", "rop_fragments"})
-    if (unit == each) return stage.can_be_fixed_function;
-  return true;
+    if (unit == each) return true;
+  return false;
+}
+
+// May the stage name the unit? The counters of other stages would say nothing to it. Textures and the rates of
+// triangles, quads and exports serve both kinds of stages, and L2 and DRAM all of them, named or not.
+bool can_do(const std::string& unit, const StageInfo& stage) {
+  if (unit == "l2" || unit == "dram") return false;
+  return is_shader(unit) ? stage.can_be_shader : !is_fixed_function(unit) || stage.can_be_fixed_function;
 }
 
 // Work of a stage without units would cost nothing, and so would that of a mistyped name. A depth pre-pass runs on the
@@ -49,7 +54,9 @@ Form<UnitsOfStages> units_form() {
     object.add({std::string(stage.name), "The units that it uses.", true, list.schema,
                 [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) {
                   list.read(at, of[id]);
-                  if (of[id] == std::vector<std::string>{kOnChipMark}) at.fail("at least one unit beside on_chip");
+                  if (std::none_of(of[id].begin(), of[id].end(),
+                                   [](const auto& unit) { return is_shader(unit) || is_fixed_function(unit); }))
+                    at.fail("a unit that does the work of the stage");
                 }});
   }
   return object;
@@ -86,11 +93,15 @@ Form<std::map<std::string, RateRange>> energy_form() {
       });
 }
 
-// The rates lie in their ranges.
+// The rates lie in their ranges, and no more of DRAM's peak is reached than there is.
 void expect_in_ranges(const JsonCursor& at, const Hardware& hardware) {
-  for (const auto& [name, range] : hardware.ranges)
-    if (!(range.low <= hardware.rates.at(name) && hardware.rates.at(name) <= range.high))
-      at["ranges"][name].fail("a range around the rate of " + Json(hardware.rates.at(name)).dump());
+  if (hardware.rates.at(kDramEfficiency) > 1) at["rates"][kDramEfficiency].fail("a number up to 1");
+  for (const auto& [name, range] : hardware.ranges) {
+    const double rate = hardware.rates.at(name);
+    if (!(range.low <= rate && rate <= range.high))
+      at["ranges"][name].fail("a range around the rate of " + Json(rate).dump(),
+                              Json(range.low).dump() + " to " + Json(range.high).dump());
+  }
 }
 
 Form<Hardware> hardware_form() {
@@ -155,7 +166,7 @@ const std::vector<form::Key>& hardware_rates() {
       {"on_chip_bytes_per_clk", "Bytes of pixels on chip that are read and written."},
       {"l2_bytes_per_clk", "Bytes that L2 moves."},
       {"dram_bytes_per_clk", "Bytes that DRAM moves at its peak."},
-      {"dram_efficiency", "The part of the peak that requests reach, up to 1."},
+      {kDramEfficiency, "The part of the peak that requests reach, up to 1."},
   };
   return all;
 }

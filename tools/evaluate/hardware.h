@@ -24,6 +24,9 @@ struct Implementation {
   std::map<StageId, std::vector<std::string>> units;  // of every stage but that of the reference
 };
 
+inline constexpr const char* kDramEfficiency = "dram_efficiency";  // a rate: up to 1
+inline constexpr double kLeastRate = 1e-6, kMostRate = 1e12;       // so that no time becomes infinite
+
 // What each invocation of a fragment shader costs beside what the trace's materials cost.
 struct ShadingCost {
   double operations = 0;

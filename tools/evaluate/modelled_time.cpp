@@ -172,11 +172,17 @@ std::pair<std::string, double> busiest_of(const std::map<std::string, double>& t
   return most;
 }
 
+// Units of which each core has its part. The others serve all bins.
+bool is_of_cores(const std::string& unit) {
+  for (const char* const each : {"shader", "texture", "quads", "mask_generator", "sorter", "composer"})
+    if (unit == each) return true;
+  return false;
+}
+
 double scheduled_ms(const std::map<std::string, double>& of_bins, const std::map<std::string, double>& before,
                     double times_longer) {
   double longest = 0;
-  for (const auto& [unit, ms] : of_bins)
-    longest = std::max(longest, unit == kL2 || unit == kDram ? ms : ms * times_longer);
+  for (const auto& [unit, ms] : of_bins) longest = std::max(longest, is_of_cores(unit) ? ms * times_longer : ms);
   return busiest_of(before).second + longest;
 }
 

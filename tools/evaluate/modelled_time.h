@@ -2,7 +2,7 @@
 //
 // A stage takes as long as its busiest unit. A core works on several bins at a time; where its memory has no room for
 // as many, the stages that work on pixels wait as much longer. The model knows no latency, no divergence within warps
-// and no driver. Its times are therefore lower bounds, and the ratios between them say more than the times themselves.
+// and no driver, so that real frames take longer. Ratios say more than times.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace beampipe {
 struct FrameWork {
   const std::vector<StageCounters>& stages;
   double bin_bytes = 0;                                // that the pixels of a bin take on chip; 0: they are in memory
-  std::span<const std::uint64_t> bin_operations = {};  // of all stages of a bin, in the order in which bins are drawn
+  std::span<const std::uint64_t> bin_operations = {};  // as in FrameResult
 };
 
 // Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...).
@@ -45,8 +45,8 @@ struct StageTime {
 
 struct ModelledTime {
   double overlap_ms = 0;  // all stages at once, evenly on all cores: the time of the busiest unit, over all stages
-  // After vertex_setup come the bins, each on a core of its own with all its stages at once. L2 and DRAM belong to all
-  // cores. A bin's share of the cores' work is its share of the operations.
+  // After vertex_setup come the bins, each on a core of its own with all its stages at once. A bin's share of the work
+  // of cores (shaders, textures, masks, composition) is its share of the operations. Other units serve all bins evenly.
   double scheduled_ms = 0;
   double sum_ms = 0;              // one stage after the other: the sum of `stages`
   std::string busiest;            // the unit of overlap_ms

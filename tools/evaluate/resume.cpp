@@ -105,6 +105,12 @@ Form<Maker> maker_form() {
       .written(
           "hardware", [](const Maker& maker) { return digest_of(maker.plan.hardware.json.dump()); }, digest,
           "Digest of the description.")
+      .written(
+          "shading_options",
+          [](const Maker& maker) {
+            return maker.plan.shading_options.empty() ? std::nullopt : std::optional(maker.plan.shading_options);
+          },
+          text, "Options that add to what shading costs.")
       .written("ladder", &Maker::ladder, form::list(form::count(1)),
                "compare: the MSAA rates of --ladder; empty: the default ones.")
       .written("causes", &Maker::causes, form::boolean(), "compare: --causes.")

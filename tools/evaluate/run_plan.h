@@ -20,6 +20,7 @@ struct RunPlan {
   std::vector<std::size_t> frames;  // indices into the trace, rising
   int repeat = 1;
   Hardware hardware = titan_v();
+  std::string shading_options;                 // as on the command line, with a blank before each
   std::shared_ptr<const TextureSet> textures;  // of the trace
   FrameInput options;                          // `threads` is the actual number, never 0
   FrameSinks sinks;

@@ -103,7 +103,7 @@ std::string command_of(const ReportFile& report) {
   if (report.json.value("trace_frames", rendered) > rendered)
     text += " --frames " + maker.at("frames").get<std::string>();
   if (maker.at("repeat") != 1) text += " --repeat " + maker.at("repeat").dump();
-  text += hardware_option(report.json) + memory_options(report.json);
+  text += hardware_option(report.json) + memory_options(report.json) + maker.value("shading_options", std::string());
   std::string rungs;
   const Json ladder = maker.value("ladder", Json::array());
   for (const Json& rung : ladder.elements()) rungs += (rungs.empty() ? "" : ",") + rung.dump();

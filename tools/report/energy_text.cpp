@@ -92,6 +92,10 @@ std::string ends_text(const Interval& interval) {
   return two_digits(interval.low) + " to " + two_digits(interval.high);
 }
 
+std::string quotient_text(const Interval& interval) {
+  return ends_text(interval) + (interval.low <= 1 && interval.high >= 1 ? ", even" : "");
+}
+
 Json ends_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
 
 Json energy_json(const Energy& energy) {
@@ -115,7 +119,7 @@ std::string energy_text(const Report& report, const std::string& over) {
     for (const auto& [unit, rate] : row.rates)
       compared += (compared.empty() ? "" : ", ") + unit + format(" %.0f", rate);
     cells.insert(cells.end(), {ends_text(row.watts()), format("%.0f", row.on_chip_bytes / 1024), compared});
-    if (!over.empty()) cells.push_back(row.quotient ? ends_text(*row.quotient) : "");
+    if (!over.empty()) cells.push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
   return "\nmodelled mJ on " + report.hardware.label + " (" + report.hardware.name + ")\n" +
          align_columns(rows, {0, 1, rows[0].size() - 1, rows[0].size() - (over.empty() ? 1 : 2)});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "tools/evaluate/hardware.h"
 #include "tools/evaluate/results.h"
 #include "tools/report/colors.h"
 #include "tools/report/plot.h"
@@ -56,7 +57,7 @@ std::optional<Roof> roof_of(const ReportFile& report) {
   const Json::Object& implementations = hardware.at("implementations").members();
   if (implementations.empty()) throw JsonError("expected hardware with an implementation, found none");
   return Roof{implementations.front().key, gigahertz * rates.at("issue_per_clk").get<double>(),
-              gigahertz * rates.at("dram_bytes_per_clk").get<double>()};
+              gigahertz * rates.at("dram_bytes_per_clk").get<double>() * rates.value(kDramEfficiency, 1.0)};
 }
 
 // A line that rises from left of the leftmost stage, as long as DRAM is the limit, and then runs flat until right of

@@ -149,9 +149,9 @@ void add_energy(std::vector<Source>& columns, const ReportFile& report, const st
     const std::string key = "energy_mj_" + name + (is_of_one ? "_" + implementation : "");
     const std::string pointer = "/energy_mj/" + name + (is_of_one ? "/" + implementation : "");
     const std::string title = name + (is_of_one ? ", " + implementation : "");
-    columns.push_back({{key + "_low", title + ", least", unit, "The least modelled energy of " + meaning + ".", kLeast},
+    columns.push_back({{key + "_low", title + ", least", unit, "The least modelled energy: " + meaning + ".", kLeast},
                        pointer + "/low"});
-    columns.push_back({{key + "_high", title + ", most", unit, "The most modelled energy of " + meaning + ".", kMost},
+    columns.push_back({{key + "_high", title + ", most", unit, "The most modelled energy: " + meaning + ".", kMost},
                        pointer + "/high"});
   };
   for (const EnergyTerm& term : energy_terms())
@@ -318,8 +318,8 @@ std::optional<double> mean_of_frames(const Json& result, std::string_view key) {
   return sum / static_cast<double>(frames.size());
 }
 
-// Of the first frame: what the pixels of a bin take on chip, how many bins have room, and how uneven bins are. The mean
-// over the frames: DRAM bytes of geometry.
+// Of the first frame: what the pixels of a bin take on chip, and how many bins have room. Means over the frames: how
+// uneven bins are, and DRAM bytes of geometry.
 void add_room(const ReportFile& report, const Json& result, Json& record) {
   const Json* const memory = report.json.find("memory_system");
   if (!memory || !memory->at("modelled").get<bool>() || result.at("technique") == kReferenceSpec) return;
@@ -327,10 +327,14 @@ void add_room(const ReportFile& report, const Json& result, Json& record) {
   parameters.on_chip_bytes = memory->at("on_chip_bytes").get<std::uint32_t>();
   parameters.bins_per_core = memory->at("bins_per_core").get<std::uint32_t>();
   const std::vector<Json>& frames = result.at("frames").elements();
-  std::vector<std::uint64_t> operations;
-  const Json of_bins = frames.front().value("bin_operations", Json::array());
-  for (const Json& of_bin : of_bins.elements()) operations.push_back(of_bin.get<std::uint64_t>());
-  record["imbalance"] = imbalance(operations, memory->at("cores").get<std::uint32_t>());
+  double uneven = 0;
+  for (const Json& frame : frames) {
+    std::vector<std::uint64_t> operations;
+    const Json of_bins = frame.value("bin_operations", Json::array());
+    for (const Json& of_bin : of_bins.elements()) operations.push_back(of_bin.get<std::uint64_t>());
+    uneven += imbalance(operations, memory->at("cores").get<std::uint32_t>());
+  }
+  record["imbalance"] = uneven / static_cast<double>(frames.size());
   for (const Json& buffer : frames.front().at("buffers").elements()) {
     if (buffer.at("name") != kOpenPixels) continue;
     const double bytes = buffer.at("peak_bytes").get<double>();

@@ -61,6 +61,21 @@ struct Row {
   std::optional<Quotient> quotient = {};
 };
 
+// With the value in it, which may be at the end of what its rates allow.
+Interval around(double value, const Interval& interval) {
+  return {std::min(value, interval.low), std::max(value, interval.high)};
+}
+
+// The part of one of several frames. Stages for alpha are not in all of them.
+void add_stages(const std::vector<StageTime>& stages, double frames, std::vector<StageTime>& mean) {
+  for (const StageTime& stage : stages) {
+    const auto is_it = [&](const StageTime& each) { return each.stage == stage.stage; };
+    const auto found = std::find_if(mean.begin(), mean.end(), is_it);
+    StageTime& of_mean = found == mean.end() ? mean.emplace_back(StageTime{stage.stage, 0, stage.busiest}) : *found;
+    of_mean.ms += stage.ms / frames;
+  }
+}
+
 class Rows {
  public:
   Rows(const Report& report, const TimesOptions& options)
@@ -87,14 +102,15 @@ class Rows {
     const auto frames = static_cast<double>(result.frames.size());
     for (const FrameReport& frame : result.frames) {
       const ModelledTime time = modelled_time(hardware, row.implementation, frame.work());
-      if (row.mean.stages.empty()) row.mean.stages = time.stages, row.mean.busiest = time.busiest;
+      if (row.mean.busiest.empty()) row.mean.busiest = time.busiest;
+      add_stages(time.stages, frames, row.mean.stages);
       row.mean.sum_ms += time.sum_ms / frames;
       row.mean.scheduled_ms += time.scheduled_ms / frames;
       row.mean.overlap_ms += time.overlap_ms / frames;
       row.times_longer += imbalance(frame.bin_operations, hardware.memory.cores) / frames;
     }
     const std::vector<double> drawn = mean_sums_ms(draws_, i, result);
-    row.interval = middle_of(drawn);
+    row.interval = around(row.mean.sum_ms, middle_of(drawn));
     if (over_ && over_ != &result) row.quotient = quotient_of(result, i, drawn, row.mean.sum_ms);
     return row;
   }
@@ -102,7 +118,8 @@ class Rows {
   Quotient quotient_of(const TechniqueReport& result, std::size_t i, std::vector<double> drawn, double ms) const {
     const std::vector<double> of_over = mean_sums_ms(draws_, i, *over_);
     for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k] /= of_over[k];
-    Quotient quotient{ms / mean_sum_ms(report_.hardware, i, *over_), middle_of(drawn), {}};
+    const double value = ms / mean_sum_ms(report_.hardware, i, *over_);
+    Quotient quotient{value, around(value, middle_of(drawn)), {}};
     for (const RateEnds& ends : ends_) {
       const auto at = [&](const Hardware& end) { return mean_sum_ms(end, i, result) / mean_sum_ms(end, i, *over_); };
       quotient.effects.push_back({ends.rate, at(ends.low), at(ends.high)});

@@ -22,7 +22,7 @@ constexpr const char* kClock = "clock_mhz";  // is varied like a rate
 constexpr const char *kTableRows = "rows of the table", *kKinds = "kinds of hardware";
 constexpr std::uint32_t kMostPixels = 16384;
 
-Form<double> rate_form() { return form::number_between(0, std::numeric_limits<double>::infinity()); }
+Form<double> rate_form() { return form::number(kLeastRate, kMostRate); }
 
 // The values of one axis, where they stand in the file.
 using Axes = std::map<std::string, std::vector<JsonCursor>>;
@@ -281,6 +281,7 @@ class PlanReader {
         for (const auto& [name, value] : values) {
           index_in(plan_.varied_rates, name);
           const double rate = rate_form()(value);
+          if (name == kDramEfficiency && rate > 1) value.fail("a number up to 1");
           (name == kClock ? part.clock_mhz : part.rates[name]) = rate;
           key += "," + name + Json(rate).dump();
         }

@@ -64,10 +64,18 @@ bool is_axis(const std::string& name) {
          name.starts_with("memory_system.");
 }
 
-// The axes in which rows differ that have the same trace, size, x and line, but not the same y: each of them only if
-// those before it do not tell these rows apart.
+bool varies(const SweepTable& table, std::size_t column) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [&](const auto& row) { return row[column] != table.rows.front()[column]; });
+}
+
+// Hardware, because a line would join what several GPUs have; and the axes in which rows differ that have the same
+// trace, size, x and line, but not the same y: each of them only if those before it do not tell these rows apart.
 std::vector<std::size_t> facet_columns(const SweepTable& table, const Chosen& chosen) {
   std::vector<std::size_t> same = {chosen.x, chosen.by}, facets;
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (table.columns[i].name == "hardware" && i != chosen.by && varies(table, i))
+      facets.push_back(i), same.push_back(i);
   std::vector<std::size_t> axes;
   for (std::size_t i = 0; i < table.columns.size(); ++i) (is_axis(table.columns[i].name) ? axes : same).push_back(i);
   std::erase_if(same, [&](std::size_t column) {
@@ -84,7 +92,7 @@ std::vector<std::size_t> facet_columns(const SweepTable& table, const Chosen& ch
       const auto& [value, y] = found.emplace(key, std::pair(row[axis], row[chosen.y])).first->second;
       return value != row[axis] && y != row[chosen.y];
     });
-    if (!differs) continue;
+    if (!differs || std::find(facets.begin(), facets.end(), axis) != facets.end()) continue;
     facets.push_back(axis);
     same.push_back(axis);
   }
@@ -121,8 +129,7 @@ ScatterPlot plot_of(const SweepTable& table, const PlotColumns& columns, const C
   std::string file = columns.y + "_against_" + columns.x + "_by_" + columns.by;
   if (!facet.empty()) file += "_" + spec_folder(facet);
   ScatterPlot plot{.name = file,
-                   .title = columns.y + " against " + columns.x + ", by " + columns.by +
-                            (facet.empty() ? "" : "; " + facet) +
+                   .title = (facet.empty() ? columns.y + " by " + columns.by : facet) +
                             (most > 1 ? " (geometric means of " + std::to_string(most) + ")" : ""),
                    .x_label = title_of(table.columns[x], x_unit),
                    .y_label = title_of(table.columns[y], y_unit)};
@@ -168,7 +175,12 @@ std::vector<ScatterPlot> sweep_plots(const SweepTable& table, const PlotColumns&
     found->second.rows.push_back(row);
   }
   std::vector<ScatterPlot> plots;
-  for (const auto& [name, part] : parts) plots.push_back(plot_of(part, columns, chosen, name));
+  for (const auto& [name, part] : parts) {
+    plots.push_back(plot_of(part, columns, chosen, name));
+    const auto same_file = [&](const ScatterPlot& plot) { return plot.name == plots.back().name; };
+    if (std::count_if(plots.begin(), plots.end(), same_file) > 1)
+      plots.back().name += "_" + std::to_string(plots.size());
+  }
   return plots;
 }
 

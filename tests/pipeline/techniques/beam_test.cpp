@@ -156,8 +156,6 @@ TEST(Beam, SetupIsReadFromNearToFar) {
   }
 }
 
-// Every triangle is set up and binned once, and every pair makes at most one fragment, which is composed once. Nothing
-// reads the setup triangles of a frame twice.
 // Four bins with the same triangles. Of what they keep in memory, P bytes each, L2 holds L of the k bins in work, so
 // that 1 - L / (k P) of the requests reach DRAM: half of L / P more with two bins in work than with one, and a quarter
 // of it more with four.
@@ -187,6 +185,8 @@ TEST(Beam, RecordsInMemoryThatL2DoesNotHoldMoveThroughDram) {
   EXPECT_EQ(dram(80), dram(4));
 }
 
+// Every triangle is set up and binned once, and every pair makes at most one fragment, which is composed once. Nothing
+// reads the setup triangles of a frame twice.
 TEST(Beam, TakesOnePassOverTheGeometry) {
   const Trace trace = random_trace(16, 16, 3000, 2);  // one bin
   const FrameResult result = render("beam", trace);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Computes all modelled times of a report again from its counters and its hardware, as docs/costs.md describes them.
 
-usage: modelled_times_test.py BEAMPIPE
+usage: modelled_times_test.py BEAMPIPE SOURCE_FOLDER
 """
 import heapq
 import json
@@ -12,6 +12,8 @@ import sys
 import tempfile
 import unittest
 
+NO_COSTS = {kind: {"operations": 0, "fetches": 0, "registers": 0} for kind in ("material", "light")}
+OF_CORES = {"shader", "texture", "quads", "mask_generator", "sorter", "composer"}
 SPECS = ["beam", "beam:order=sorted", "casav", "msaa:8", "msaa:8,prepass", "acaa:8", "deferred", "taa:4", "dvm"]
 
 
@@ -52,6 +54,23 @@ def unit_clocks(unit, stage, rates, on_chip):
     return max(clocks)
 
 
+def priced(stage, shading, has_light):
+    """The stage's counters with what its invocations cost beside their materials, and the registers of one."""
+    name, costs = stage["stage"], []
+    if name == "shade":
+        costs = [shading["material"]] + ([] if has_light else [shading["light"]])
+    elif name == "light":
+        costs = [shading["light"]]
+    stage = stage | {"ops": dict(stage["ops"])}
+    for cost in costs:
+        half, texels = int(stage["lanes_issued"] * cost["operations"] / 2), int(stage["lanes_issued"] * cost["fetches"] * 16)
+        for kind, more in (("mul_add", half), ("add", half), ("total", 2 * half)):
+            stage["ops"][kind] += more
+        for counter in ("bytes_read", "texture_bytes"):
+            stage[counter] += texels
+    return stage, max([cost["registers"] for cost in costs], default=0)
+
+
 def on_busiest_core(operations, cores):
     """The work of the busiest core over the mean: each bin starts on the core that is free first."""
     free_at = [0] * cores
@@ -66,7 +85,7 @@ class ModelledTimesTest(unittest.TestCase):
             trace, out = f"{scratch}/trace.json", pathlib.Path(scratch) / "out"
             subprocess.run([BEAMPIPE, "make", "room", "--width", "160", "--height", "90", "-o", trace], check=True,
                            stdout=subprocess.DEVNULL)
-            for part in ("titan_v", "rtx_4090", "mali_g710"):
+            for part in ("titan_v", "rtx_4090", "mali_g710", f"{SOURCE}/docs/examples/hardware.json"):
                 subprocess.run([BEAMPIPE, "run", trace, "-t", *SPECS, "--hardware", part, "-o", out, "--force"], check=True,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                 self.check(json.loads((out / "report.json").read_text()), part)
@@ -86,13 +105,16 @@ class ModelledTimesTest(unittest.TestCase):
                 used = {unit for units in units_of.values() for unit in units}
                 has_rops = used & {"rop_samples", "rop_fragments", "composer"}
                 not_there = {"on_chip"} if has_rops else {"on_chip", "export"}
-                for stage in frame["stages"]:
+                has_light = any(stage["stage"] == "light" for stage in frame["stages"])
+                for counted in frame["stages"]:
+                    stage, registers = priced(counted, hardware.get("shading", NO_COSTS), has_light)
                     units = units_of[stage["stage"]]
                     stall = memory["bins_per_core"] / held if "on_chip" in units and bin_bytes else 1
                     times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0) / clocks_per_ms * stall
                              for unit in units if unit not in not_there}
                     times |= {unit: unit_clocks(unit, stage, rates, False) / clocks_per_ms for unit in ("l2", "dram")}
                     if "shading" in times:
+                        times["shading"] *= max(1, registers / rates["registers_at_full_rate"])
                         times["shader"] = max(times.pop("shading"), times.get("shader", 0))
                     compared.append((f"{part} {result['technique']} {way} {stage['stage']}", stage["modelled_ms"][way],
                                      max(times.values())))
@@ -101,7 +123,7 @@ class ModelledTimesTest(unittest.TestCase):
                     for unit, ms in times.items():
                         busy[unit] = busy.get(unit, 0) + ms
                 longer = on_busiest_core(frame["bin_operations"], memory["cores"])
-                on_cores = max(before.values()) + max(ms if unit in ("l2", "dram") else ms * longer
+                on_cores = max(before.values()) + max(ms * longer if unit in OF_CORES else ms
                                                       for unit, ms in of_bins.items())
                 at_once = max(before.get(unit, 0) + of_bins.get(unit, 0) for unit in before | of_bins)
                 for key, expected in (("sum", in_turn), ("scheduled", on_cores), ("overlap", at_once)):
@@ -113,5 +135,5 @@ class ModelledTimesTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    BEAMPIPE = sys.argv.pop(1)
+    BEAMPIPE, SOURCE = sys.argv.pop(1), sys.argv.pop(1)
     unittest.main()

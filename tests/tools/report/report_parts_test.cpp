@@ -269,13 +269,14 @@ TEST_F(ReportParts, ConditionsTellHowTheNumbersWereFound) {
                {"index": 4, "width": 320, "height": 180, "triangles": 7, "draws": 3, "lights": 1}],
     "notes": [{"reason": "stencil test", "left_out": true, "draws": 1, "triangles": 34}],
     "made_by": {"command": "compare", "techniques": ["beam", "msaa:8"], "frames": "3-4", "repeat": 5, "memory_model": false,
-                "memory_system": "0", "ladder": [1, 8],
+                "memory_system": "0", "shading_options": " --material-cost 200,4", "ladder": [1, 8],
                 "causes": true, "orders": false}, )");
   text.replace(text.find("dots.json"), 9, "my dots.json");
   const ReportFile report = read(text);
   EXPECT_EQ(command_of(report),
             "beampipe compare 'my dots.json' -t beam msaa:8 --frames 3-4 --repeat 5 --hardware 'our gpus/some.json' "
-            "--no-memory-model --no-compression --framebuffer on-chip --on-chip-memory 65536 --ladder 1,8 --causes");
+            "--no-memory-model --no-compression --framebuffer on-chip --on-chip-memory 65536 --material-cost 200,4 "
+            "--ladder 1,8 --causes");
   std::map<std::string, std::string> found;
   const Json conditions = report_conditions(report);
   for (const Json& each : conditions.elements()) found[each.at(0).get<std::string>()] = each.at(1).get<std::string>();

@@ -136,7 +136,9 @@ TEST_F(SweepPlanTest, MistakesNameTheKey) {
             "/sizes/0: expected WIDTHxHEIGHT, each from 1 to 16384, such as \"320x180\", found \"320*180\"");
   EXPECT_EQ(refusal(R"(, "frames": [2, 1])"), "/frames/1: expected a larger number than the one before it, found 1");
   EXPECT_EQ(refusal(R"(, "hardware.dram_bytes_per_clk": [0])"),
-            "/hardware.dram_bytes_per_clk/0: expected a number above 0, found 0");
+            "/hardware.dram_bytes_per_clk/0: expected a number from 1e-06 to 1e+12, found 0");
+  EXPECT_EQ(refusal(R"(, "hardware.dram_efficiency": [0.5, 5])"),
+            "/hardware.dram_efficiency/1: expected a number up to 1, found 5");
   EXPECT_EQ(refusal(R"(, "implementations": ["shader"])").find("/implementations/0: expected"), 0u);
   EXPECT_NE(refusal(R"(, "points": [{"techniques": ["mssa:8"]}])").find("did you mean 'msaa'"), std::string::npos);
   EXPECT_EQ(refusal(R"(, "points": [{"techniques": ["reference"]}])").find("/points/0/techniques/0: expected"), 0u);

@@ -52,7 +52,7 @@ TEST(SweepPlot, LinesGoThroughGeometricMeans) {
   const std::vector<ScatterPlot> plots = sweep_plots(sample_table(), {"x", "y", "name"});
   ASSERT_EQ(plots.size(), 1u);
   const ScatterPlot& plot = plots[0];
-  EXPECT_EQ(plot.title, "y against x, by name (geometric means of 2)");
+  EXPECT_EQ(plot.title, "y by name (geometric means of 2)");
   EXPECT_EQ(plot.x_ticks, (std::vector<double>{1, 10}));
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].name, "plain");
@@ -95,14 +95,17 @@ TEST(SweepPlot, UnlikeThingsAreNotAveraged) {
                                 implementation == std::string("fixed") ? 2 : (trace == std::string("a") ? 10 : 40)});
   const std::vector<ScatterPlot> by_technique = sweep_plots(table, {"x", "y", "technique"});
   ASSERT_EQ(by_technique.size(), 4u);
-  EXPECT_EQ(by_technique[0].title,
-            "y against x, by technique; hardware small, implementation shaders (geometric means of 2)");
+  EXPECT_EQ(by_technique[0].title, "hardware small, implementation shaders (geometric means of 2)");
   EXPECT_EQ(by_technique[3].name, "y_against_x_by_technique_hardware_large__implementation_fixed");
   EXPECT_NEAR(by_technique[0].series.at(0).points.at(0).y, 20, 1e-9);
   EXPECT_NEAR(by_technique[1].series.at(0).points.at(1).y, 2, 1e-9);
+  for (std::vector<Json>& row : table.rows) row[3] = row[3] == "small" ? "a b" : "a:b";
+  const std::vector<ScatterPlot> alike = sweep_plots(table, {"x", "y", "technique"});
+  EXPECT_NE(alike[0].name, alike[2].name) << "whatever their names have in place of blanks";
+  EXPECT_EQ(sweep_plots(table, {"memory_system.l1_bytes", "y", "technique"}).size(), 4u) << "no line joins two GPUs";
   const std::vector<ScatterPlot> by_hardware = sweep_plots(table, {"x", "y", "hardware"});
   ASSERT_EQ(by_hardware.size(), 2u) << "L1 goes with the hardware";
-  EXPECT_EQ(by_hardware[1].title, "y against x, by hardware; implementation fixed (geometric means of 2)");
+  EXPECT_EQ(by_hardware[1].title, "implementation fixed (geometric means of 2)");
   EXPECT_EQ(by_hardware[1].series.size(), 2u);
 }
 
