@@ -51,7 +51,7 @@ class SchemaTest(unittest.TestCase):
         size = ["--width", "16", "--height", "9"]
         cls.run_program("make", "room", *size, "--triangles", "1000", "-o", cls.room)
         cls.run_program("make", "fence", *size, "--triangles", "1000", "--frames", "2", "--orbit", "3", "-o", fence)
-        runs = {"run": ["run", fence, "--frames", "0", "--repeat", "2", "-t", "beam", "dvm", "msaa:2,motion"],
+        runs = {"run": ["run", fence, "--frames", "0", "--repeat", "2", "--material-cost", "10", "-t", "beam", "dvm", "msaa:2,motion"],
                 "no_memory": ["run", fence, "--no-memory-model", "-t", "beam"],
                 "compare": ["compare", fence, "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2,4,8,16", "--hardware", "rtx_4090", "-t",
                             "beam", "beam:order=sorted", "casav", "acaa:2", "msaa:1"],
