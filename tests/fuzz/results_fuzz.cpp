@@ -17,6 +17,7 @@
 #include "tools/report/layers.h"
 #include "tools/report/page.h"
 #include "tools/report/report_text.h"
+#include "tools/report/times_text.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe {
