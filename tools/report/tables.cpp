@@ -283,7 +283,7 @@ Table make_table(const std::string& name, const std::string& title, const std::s
   return table;
 }
 
-// Adds two columns after the DRAM bytes for each implementation of the modelled hardware, and those of energy.
+// Adds three columns after the DRAM bytes for each implementation of the modelled hardware, and those of energy.
 std::vector<Source> with_modelled(std::vector<Source> sources, const ReportFile& report, const std::string& unit,
                                   const std::string& energy_unit) {
   auto place =

@@ -55,7 +55,7 @@ struct Quotient {
 struct Row {
   const TechniqueReport& result;
   const Implementation& implementation;
-  ModelledTime mean = {};  // of the frames; units and stages of the first
+  ModelledTime mean = {};  // of the frames; its unit is that of the first
   double times_longer = 0;
   Interval interval = {};
   std::optional<Quotient> quotient = {};
