@@ -72,7 +72,7 @@ def saved(program, traces, folder):
             results = measure.results(program, "run", trace, [SAME_FORMAT, ACAA], folder, "--width", str(width))
             msaa, acaa = results[SAME_FORMAT], results[ACAA]
             shares = [dram_bytes(msaa, GEOMETRY) / dram_bytes(msaa), 1 - dram_bytes(acaa) / dram_bytes(msaa),
-                      *(1 - times(acaa)[how] / times(msaa)[how] for how in ("overlap", "sum"))]
+                      *(1 - times(acaa)[how] / times(msaa)[how] for how in ("at_once", "in_turn"))]
             measure.print_row(name(trace), width, *(f"{100 * share:.0f} %" for share in shares))
 
 

@@ -142,7 +142,7 @@ def print_faces(table, other_way):
             return [float((table if (scene in PROCEDURAL) == culled else other_way).row(scene, spec)[column])
                     for scene in table.scenes]
         rates = [values("emr", culled) for culled in (False, True)]
-        times = [new / old for new, old in zip(values("modelled_ms", True), values("modelled_ms", False))]
+        times = [new / old for new, old in zip(values("at_once_ms", True), values("at_once_ms", False))]
         print_row(f"`{spec}`", *(rate(summary(column)) for column in rates for summary in (mean, min)),
                   f"{mean(times):.2f}")
 
@@ -171,7 +171,7 @@ def print_pools(table):
             moved = [float(table.row(scene, spec)["l2_bytes"]) - float(table.row(scene, largest)["l2_bytes"])
                      for scene in table.scenes]
             pixels = math.prod(map(int, table.size.split("x")))
-            times = [new / old for new, old in zip(table.values("modelled_ms", spec), table.values("modelled_ms", largest))]
+            times = [new / old for new, old in zip(table.values("at_once_ms", spec), table.values("at_once_ms", largest))]
             cells.append(f"{sum(moved) / len(moved) / pixels:.1f}, {mean(times):.2f}, {max(times):.2f}")
         print_row(f"`{technique}`", *cells)
 

@@ -54,7 +54,7 @@ def first_folders(folders):
 
 def cells_of(times, names):
     """Milliseconds with their interval, and the busiest unit."""
-    return [f"{time['sum']:.3f} ({time['sum_interval'][0]:.3g}–{time['sum_interval'][1]:.3g}, {time['busiest']})"
+    return [f"{time['in_turn']:.3f} ({time['in_turn_interval'][0]:.3g}–{time['in_turn_interval'][1]:.3g}, {time['busiest']})"
             for time in (times[name] for name in names)]
 
 
@@ -95,7 +95,7 @@ def cores(program, folders):
         for technique, of in found.items():
             for name, time in of.items():
                 print_row(scene, f"`{name}`", f"`{technique}`",
-                          *(f"{time[how]:.3f}" for how in ("sum", "scheduled", "overlap")), f"{time['imbalance']:.2f}")
+                          *(f"{time[how]:.3f}" for how in ("in_turn", "on_cores", "at_once")), f"{time['imbalance']:.2f}")
 
 
 def kib_per_bin(result):
@@ -163,7 +163,7 @@ def traffic(program, folders):
             name = result["technique"]
             geometry, pixels = dram_megabytes(result)
             print_row(scene, f"`{name}`", f"{kib_per_bin(result):.0f}", f"{geometry:.1f}", f"{pixels:.1f}",
-                      *(f"{times_of[name][part]['sum']:.2f}" if part in times_of[name] else "" for part in names))
+                      *(f"{times_of[name][part]['in_turn']:.2f}" if part in times_of[name] else "" for part in names))
 
 
 def measured(program, files):

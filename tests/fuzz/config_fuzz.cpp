@@ -47,8 +47,8 @@ void check(const Hardware& hardware) {
   for (const Implementation& implementation : hardware.implementations)
     for (const double bin_bytes : {0.0, 1e6}) {
       const ModelledTime time = modelled_time(hardware, implementation, {stages, bin_bytes, bins});
-      require(std::isfinite(time.sum_ms) && std::isfinite(time.scheduled_ms));
-      require(time.overlap_ms > 0 && time.overlap_ms <= time.sum_ms * (1 + 1e-9));
+      require(std::isfinite(time.in_turn_ms) && std::isfinite(time.on_cores_ms));
+      require(time.at_once_ms > 0 && time.at_once_ms <= time.in_turn_ms * (1 + 1e-9));
     }
 }
 

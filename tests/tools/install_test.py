@@ -73,7 +73,7 @@ class Install(unittest.TestCase):
         result, = (each for each in report["results"] if each["technique"] == "overdraw")
         self.assertGreater(result["equivalent_msaa"], 0)
         for times in result["frames"][0]["modelled_ms"].values():
-            self.assertGreater(times["overlap"], 0)
+            self.assertGreater(times["at_once"], 0)
         self.run_it("examples/own_technique", "report", "own")
         self.assertIn("overdraw", (self.folder / "own/report.html").read_text())
         plan = {"beampipe_sweep": 1, "traces": ["t.json"], "techniques": ["overdraw", "msaa:1"]}

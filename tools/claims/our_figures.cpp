@@ -75,7 +75,7 @@ std::optional<ModelledTime> time_of(const Findings& found, const std::string& sp
 Number milliseconds(const Findings& found, const std::string& spec, const std::vector<Stage>& stages = {}) {
   const std::optional<ModelledTime> time = time_of(found, spec);
   if (!time) return {};
-  if (stages.empty()) return time->sum_ms;
+  if (stages.empty()) return time->in_turn_ms;
   Number sum;
   for (const StageTime& each : time->stages)
     if (std::find(stages.begin(), stages.end(), each.stage) != stages.end()) sum = sum.value_or(0) + each.ms;
@@ -291,10 +291,10 @@ std::vector<Formula> our_formulas() {
       {"acaa.added_traffic_saved", saved(part_of_added, moves_framebuffer)},
       {"acaa.traffic_saved", saved(part_of_all, moves_framebuffer)},
       {"acaa.all_traffic_saved", saved(part_of_all, is_any)},
-      {"acaa.added_ms_saved", saved(part_of_added, &ModelledTime::overlap_ms)},
-      {"acaa.ms_saved", saved(part_of_all, &ModelledTime::overlap_ms)},
-      {"acaa.added_ms_saved_in_turn", saved(part_of_added, &ModelledTime::sum_ms)},
-      {"acaa.ms_saved_in_turn", saved(part_of_all, &ModelledTime::sum_ms)},
+      {"acaa.added_ms_saved", saved(part_of_added, &ModelledTime::at_once_ms)},
+      {"acaa.ms_saved", saved(part_of_all, &ModelledTime::at_once_ms)},
+      {"acaa.added_ms_saved_in_turn", saved(part_of_added, &ModelledTime::in_turn_ms)},
+      {"acaa.ms_saved_in_turn", saved(part_of_all, &ModelledTime::in_turn_ms)},
       {"ms.casav", ms("casav")},
       {"ms.msaa:32", ms("msaa:32")},
       {"ms.msaa:128", ms("msaa:128")},

@@ -161,11 +161,12 @@ Form<PixelCounterStats> statistics_form() {
 // Times of an implementation.
 Form<ModelledTime> modelled_form() {
   return ObjectForm<ModelledTime>()
-      .written("overlap", &ModelledTime::overlap_ms, form::amount(),
+      .written("at_once", &ModelledTime::at_once_ms, form::amount(),
                "All stages at once: the time of the busiest unit.")
-      .written("scheduled", &ModelledTime::scheduled_ms, form::amount(),
+      .written("on_cores", &ModelledTime::on_cores_ms, form::amount(),
                "Bins one by one on cores, in their order, each with all its stages at once.")
-      .written("sum", &ModelledTime::sum_ms, form::amount(), "One stage after the other: the sum over the stages.")
+      .written("in_turn", &ModelledTime::in_turn_ms, form::amount(),
+               "One stage after the other: the sum over the stages.")
       .written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit.");
 }
 

@@ -8,11 +8,11 @@ MeanTimes mean_times(const Hardware& hardware, std::size_t implementation, const
   MeanTimes mean;
   for (const FrameReport& frame : result.frames) {
     const ModelledTime time = modelled_time(hardware, hardware.implementations[implementation], frame.work());
-    mean.sum_ms += time.sum_ms;
-    mean.overlap_ms += time.overlap_ms;
+    mean.in_turn_ms += time.in_turn_ms;
+    mean.at_once_ms += time.at_once_ms;
   }
   const auto frames = static_cast<double>(result.frames.size());
-  return {mean.sum_ms / frames, mean.overlap_ms / frames};
+  return {mean.in_turn_ms / frames, mean.at_once_ms / frames};
 }
 
 }  // namespace beampipe

@@ -9,7 +9,7 @@ namespace beampipe {
 
 // Milliseconds, the means over the frames: one stage after the other, and all at once.
 struct MeanTimes {
-  double sum_ms = 0, overlap_ms = 0;
+  double in_turn_ms = 0, at_once_ms = 0;
 };
 
 // `implementation`: its number in the hardware. The result has a frame.

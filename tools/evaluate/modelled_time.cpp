@@ -179,8 +179,8 @@ bool is_of_cores(const std::string& unit) {
   return false;
 }
 
-double scheduled_ms(const std::map<std::string, double>& of_bins, const std::map<std::string, double>& before,
-                    double times_longer) {
+double on_cores_ms(const std::map<std::string, double>& of_bins, const std::map<std::string, double>& before,
+                   double times_longer) {
   double longest = 0;
   for (const auto& [unit, ms] : of_bins) longest = std::max(longest, is_of_cores(unit) ? ms * times_longer : ms);
   return busiest_of(before).second + longest;
@@ -237,11 +237,11 @@ ModelledTime modelled_time(const Hardware& hardware, const Implementation& imple
     add_times(stage.stage.id == StageId::vertex_setup ? before : of_bins, of_stage);
     const auto [unit, ms] = busiest_of(of_stage);
     time.stages.push_back({stage.stage, ms, unit});
-    time.sum_ms += ms;
+    time.in_turn_ms += ms;
   }
-  time.scheduled_ms = scheduled_ms(of_bins, before, imbalance(work.bin_operations, hardware.memory.cores));
+  time.on_cores_ms = on_cores_ms(of_bins, before, imbalance(work.bin_operations, hardware.memory.cores));
   add_times(of_bins, before);
-  std::tie(time.busiest, time.overlap_ms) = busiest_of(of_bins);
+  std::tie(time.busiest, time.at_once_ms) = busiest_of(of_bins);
   return time;
 }
 

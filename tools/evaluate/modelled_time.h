@@ -44,12 +44,12 @@ struct StageTime {
 };
 
 struct ModelledTime {
-  double overlap_ms = 0;  // all stages at once, evenly on all cores: the time of the busiest unit, over all stages
+  double at_once_ms = 0;  // all stages at once, evenly on all cores: the time of the busiest unit, over all stages
   // After vertex_setup come the bins, each on a core of its own with all its stages at once. A bin's share of the work
   // of cores (shaders, textures, masks, composition) is its share of the operations. Other units serve all bins evenly.
-  double scheduled_ms = 0;
-  double sum_ms = 0;              // one stage after the other: the sum of `stages`
-  std::string busiest;            // the unit of overlap_ms
+  double on_cores_ms = 0;
+  double in_turn_ms = 0;          // one stage after the other: the sum of `stages`
+  std::string busiest;            // the unit of at_once_ms
   std::vector<StageTime> stages;  // in the order of the stages
 };
 

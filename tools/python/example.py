@@ -24,7 +24,7 @@ for technique in report.techniques:
         continue
     dram = sum(frame["dram_bytes"] for frame in result["frames"]) / len(result["frames"])
     times = result["frames"][0].get("modelled_ms", {})
-    first = next(iter(times.values()))["sum"] if times else numpy.nan
+    first = next(iter(times.values()))["in_turn"] if times else numpy.nan
     print(f"{technique:24} {1000 * result['error']['rmse']:12.3f} {result['equivalent_msaa']:8.1f} {dram / 1e6:10.2f} "
           f"{first:13.3f}")
 

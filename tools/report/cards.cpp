@@ -17,7 +17,7 @@ Json card_of(const TechniqueSummary& summary, const std::string& color) {
   if (summary.dram_bytes > 0) card["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
   for (const auto& [implementation, ms] : summary.modelled_ms)
     card["modelled_ms"][implementation] = {
-        {"overlap", ms.overlap}, {"scheduled", ms.scheduled}, {"sum", ms.sum}, {"busiest", ms.busiest}};
+        {"at_once", ms.at_once}, {"on_cores", ms.on_cores}, {"in_turn", ms.in_turn}, {"busiest", ms.busiest}};
   if (summary.rmse) card["rmse"] = *summary.rmse;
   if (summary.emr) {
     card["emr"] = summary.emr->samples;

@@ -13,8 +13,8 @@ std::string baseline_of(const ReportFile& report);
 
 // {"baseline": SPEC, "implementations": [NAME, ...], "cards": [CARD, ...]}. The baseline's card comes first. A CARD has
 // "technique", "color", "on_chip_bytes_per_pixel", "on_chip_bytes" (of the largest bin), "bytes_per_pixel" (off chip),
-// and where the report has them "dram_bytes", "modelled_ms" ({NAME: {"overlap", "sum", "busiest"}}), "rmse", "emr" and
-// "emr_bound". Numbers are per frame. Throws JsonError.
+// and where the report has them "dram_bytes", "modelled_ms" ({NAME: {"at_once", "in_turn", "busiest"}}), "rmse", "emr"
+// and "emr_bound". Numbers are per frame. Throws JsonError.
 Json report_cards(const ReportFile& report);
 
 }  // namespace beampipe

@@ -27,12 +27,12 @@ struct EnergyRow {
   const Implementation& implementation;
   Energy mean = {};                          // of the frames
   std::map<Stage, Energy> stages = {};       // the same
-  double scheduled_ms = 0;                   // the same
+  double on_cores_ms = 0;                    // the same
   double on_chip_bytes = 0;                  // in all cores
   std::map<std::string, double> rates = {};  // of comparisons, by unit
   std::optional<Interval> quotient = {};
 
-  Interval watts() const { return scheduled_ms > 0 ? part_of(mean.total(), scheduled_ms) : Interval{}; }
+  Interval watts() const { return on_cores_ms > 0 ? part_of(mean.total(), on_cores_ms) : Interval{}; }
 };
 
 Energy part_of(const Energy& sum, double parts) {
@@ -57,7 +57,7 @@ EnergyRow energy_row(const Report& report, const TechniqueReport& result, const 
     const std::vector<StageEnergy> stages = modelled_energy(hardware, implementation, frame.stages);
     row.mean += part_of(sum_of(stages), frames);
     for (const StageEnergy& each : stages) row.stages[each.stage] += part_of(each.energy, frames);
-    row.scheduled_ms += modelled_time(hardware, implementation, frame.work()).scheduled_ms / frames;
+    row.on_cores_ms += modelled_time(hardware, implementation, frame.work()).on_cores_ms / frames;
   }
   if (over && over != &result)
     row.quotient =

@@ -65,8 +65,8 @@ class Reader {
     const Times times = times_of(field("folder"), "technique");
     std::optional<Times> by;
     if (!field("over_technique").empty()) by = times_of(over.empty() ? field("folder") : over, "over_technique");
-    row.in_turn = number(times, by, &MeanTimes::sum_ms);
-    row.at_once = number(times, by, &MeanTimes::overlap_ms);
+    row.in_turn = number(times, by, &MeanTimes::in_turn_ms);
+    row.at_once = number(times, by, &MeanTimes::at_once_ms);
     return row;
   }
 

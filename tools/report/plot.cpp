@@ -145,7 +145,7 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.rmse || (modelled && !summary.modelled_ms.contains(implementation))) continue;
     compared = true;
-    const double ms = modelled ? summary.modelled_ms.at(implementation).overlap : summary.wall_ms;
+    const double ms = modelled ? summary.modelled_ms.at(implementation).at_once : summary.wall_ms;
     add_point(plot, reports, summary.spec, {ms, *summary.rmse, summary.spec});
   }
   if (!compared) throw_not_compared(reports);

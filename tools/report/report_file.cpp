@@ -39,15 +39,15 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
                        [&](const TechniqueSummary& summary) { return !summary.modelled_ms.contains(modelled.first); });
   });
   for (auto& [implementation, mean_ms] : mean.modelled_ms) {
-    std::vector<double> overlap, scheduled, sum;
+    std::vector<double> at_once, on_cores, in_turn;
     for (const TechniqueSummary& summary : of_one_technique) {
-      overlap.push_back(summary.modelled_ms.at(implementation).overlap);
-      scheduled.push_back(summary.modelled_ms.at(implementation).scheduled);
-      sum.push_back(summary.modelled_ms.at(implementation).sum);
+      at_once.push_back(summary.modelled_ms.at(implementation).at_once);
+      on_cores.push_back(summary.modelled_ms.at(implementation).on_cores);
+      in_turn.push_back(summary.modelled_ms.at(implementation).in_turn);
     }
-    mean_ms.overlap = geometric_mean(overlap);
-    mean_ms.scheduled = geometric_mean(scheduled);
-    mean_ms.sum = geometric_mean(sum);
+    mean_ms.at_once = geometric_mean(at_once);
+    mean_ms.on_cores = geometric_mean(on_cores);
+    mean_ms.in_turn = geometric_mean(in_turn);
   }
   mean.bytes_per_pixel = geometric_mean(bytes);
   mean.all_bytes_per_pixel = geometric_mean(all_bytes);
@@ -136,9 +136,9 @@ TechniqueSummary read_summary(const Json& result) {
     const Json times = frame.value("modelled_ms", Json::object());
     for (const auto& [implementation, time] : times.members()) {
       ModelledMs& mean = summary.modelled_ms[implementation];
-      mean.overlap += time.at("overlap").get<double>() / count;
-      mean.scheduled += time.value("scheduled", 0.0) / count;
-      mean.sum += time.at("sum").get<double>() / count;
+      mean.at_once += time.at("at_once").get<double>() / count;
+      mean.on_cores += time.value("on_cores", 0.0) / count;
+      mean.in_turn += time.at("in_turn").get<double>() / count;
       add_unit(mean.busiest, time.value("busiest", std::string()));
     }
   }
@@ -200,7 +200,7 @@ ReportFile read_report(const std::filesystem::path& folder) {
   ReportFile report{folder, {}, {}, {}, {}};
   report.json = parse_json(file.string());
   read_from_report(folder, [&] {
-    if (report.json.at("beampipe_report") != 1) throw JsonError("its beampipe_report is not 1");
+    if (report.json.at("beampipe_report") != 2) throw JsonError("its beampipe_report is not 2");
     report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
     for (const Json& result : report.json.at("results").elements()) {
       TechniqueSummary summary = read_summary(result);

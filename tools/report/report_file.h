@@ -31,8 +31,8 @@ auto read_from_report(const std::filesystem::path& folder, const Read& read) {
 // Modelled milliseconds per frame (the mean over the frames): with all stages at once, with bins one by one on cores,
 // and one stage after the other.
 struct ModelledMs {
-  double overlap = 0, scheduled = 0, sum = 0;
-  std::string busiest;  // the unit that limits `overlap`; several, with commas, if they differ from frame to frame
+  double at_once = 0, on_cores = 0, in_turn = 0;
+  std::string busiest;  // the unit that limits `at_once`; several, with commas, if they differ from frame to frame
 };
 
 // Cost and error of one technique, over all frames of a report.

@@ -177,7 +177,7 @@ ObjectForm<Report> head_form() {
   ObjectForm<Report> head;
   return head
       .written(
-          "beampipe_report", [](const Report&) { return 1; }, form::version(1), "The version of this format.")
+          "beampipe_report", [](const Report&) { return 2; }, form::version(2), "The version of this format.")
       .written("trace", &Report::trace, form::text(), "The trace, as the user named it.")
       .written("version", &Report::version, form::text(), "Of the program.")
       .written("simd", &Report::simd, form::text(), "The instruction set that was used.")
@@ -274,7 +274,7 @@ Json report_schema() {
                     .schema;
   schema["required"].push_back("results");
   schema["required"].push_back("claims");
-  return schema_file(schema, "beampipe report, version 1");
+  return schema_file(schema, "beampipe report, version 2");
 }
 
 void write_json(const Report& report, const WriteText& write) {

@@ -88,7 +88,7 @@ BarPlot time_plot(const ReportFile& report, const std::string& implementation) {
                                 });
   plot.mark_name = "all stages at once";
   for (const TechniqueSummary& summary : report.techniques)
-    plot.marks.push_back(summary.modelled_ms.at(implementation).overlap);
+    plot.marks.push_back(summary.modelled_ms.at(implementation).at_once);
   return plot;
 }
 

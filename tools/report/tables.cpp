@@ -291,16 +291,16 @@ std::vector<Source> with_modelled(std::vector<Source> sources, const ReportFile&
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
     const std::string title = implementation + ", ";
-    const Source overlap = {{key + "_overlap", title + "at once", unit,
+    const Source at_once = {{key + "_at_once", title + "at once", unit,
                              "Modelled time if all stages run at once: the time of the busiest unit.", kTime},
-                            pointer + "/overlap"};
-    const Source scheduled = {{key + "_scheduled", title + "on cores", unit,
-                               "Modelled time if bins are drawn one by one on cores, after the geometry.", kTime},
-                              pointer + "/scheduled"};
-    const Source sum = {{key + "_sum", title + "in turn", unit,
-                         "Modelled time if the stages run one after the other: the sum of their times.", kTime},
-                        pointer + "/sum"};
-    place = std::next(sources.insert(std::next(place), {overlap, scheduled, sum}));
+                            pointer + "/at_once"};
+    const Source on_cores = {{key + "_on_cores", title + "on cores", unit,
+                              "Modelled time if bins are drawn one by one on cores, after the geometry.", kTime},
+                             pointer + "/on_cores"};
+    const Source in_turn = {{key + "_in_turn", title + "in turn", unit,
+                             "Modelled time if the stages run one after the other: the sum of their times.", kTime},
+                            pointer + "/in_turn"};
+    place = std::next(sources.insert(std::next(place), {at_once, on_cores, in_turn}));
   }
   add_energy(sources, report, energy_unit);
   return sources;
@@ -365,7 +365,8 @@ std::vector<Json> technique_records(const ReportFile& report) {
     add_room(report, result, record);
     if (!summary.modelled_ms.empty()) record["hardware"] = hardware_label(report);
     for (const auto& [implementation, ms] : summary.modelled_ms)
-      record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"scheduled", ms.scheduled}, {"sum", ms.sum}};
+      record["modelled_ms"][implementation] = {
+          {"at_once", ms.at_once}, {"on_cores", ms.on_cores}, {"in_turn", ms.in_turn}};
     Json energy;
     for (const Json& frame : result.at("frames").elements())
       if (const Json* const of_frame = frame.find("energy_mj")) add_numbers(energy, *of_frame);

@@ -26,14 +26,14 @@ std::string interval_text(const Interval& interval, std::string (*text)(double))
 
 std::string ratio_text(double ratio) { return format("%.2f", ratio); }
 
-double mean_sum_ms(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result) {
-  return mean_times(hardware, implementation, result).sum_ms;
+double mean_in_turn_ms(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result) {
+  return mean_times(hardware, implementation, result).in_turn_ms;
 }
 
-std::vector<double> mean_sums_ms(const std::vector<Hardware>& all, std::size_t implementation,
-                                 const TechniqueReport& result) {
+std::vector<double> mean_in_turn_all_ms(const std::vector<Hardware>& all, std::size_t implementation,
+                                        const TechniqueReport& result) {
   std::vector<double> sums;
-  for (const Hardware& hardware : all) sums.push_back(mean_sum_ms(hardware, implementation, result));
+  for (const Hardware& hardware : all) sums.push_back(mean_in_turn_ms(hardware, implementation, result));
   return sums;
 }
 
@@ -104,24 +104,26 @@ class Rows {
       const ModelledTime time = modelled_time(hardware, row.implementation, frame.work());
       if (row.mean.busiest.empty()) row.mean.busiest = time.busiest;
       add_stages(time.stages, frames, row.mean.stages);
-      row.mean.sum_ms += time.sum_ms / frames;
-      row.mean.scheduled_ms += time.scheduled_ms / frames;
-      row.mean.overlap_ms += time.overlap_ms / frames;
+      row.mean.in_turn_ms += time.in_turn_ms / frames;
+      row.mean.on_cores_ms += time.on_cores_ms / frames;
+      row.mean.at_once_ms += time.at_once_ms / frames;
       row.times_longer += imbalance(frame.bin_operations, hardware.memory.cores) / frames;
     }
-    const std::vector<double> drawn = mean_sums_ms(draws_, i, result);
-    row.interval = around(row.mean.sum_ms, middle_of(drawn));
-    if (over_ && over_ != &result) row.quotient = quotient_of(result, i, drawn, row.mean.sum_ms);
+    const std::vector<double> drawn = mean_in_turn_all_ms(draws_, i, result);
+    row.interval = around(row.mean.in_turn_ms, middle_of(drawn));
+    if (over_ && over_ != &result) row.quotient = quotient_of(result, i, drawn, row.mean.in_turn_ms);
     return row;
   }
 
   Quotient quotient_of(const TechniqueReport& result, std::size_t i, std::vector<double> drawn, double ms) const {
-    const std::vector<double> of_over = mean_sums_ms(draws_, i, *over_);
+    const std::vector<double> of_over = mean_in_turn_all_ms(draws_, i, *over_);
     for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k] /= of_over[k];
-    const double value = ms / mean_sum_ms(report_.hardware, i, *over_);
+    const double value = ms / mean_in_turn_ms(report_.hardware, i, *over_);
     Quotient quotient{value, around(value, middle_of(drawn)), {}};
     for (const RateEnds& ends : ends_) {
-      const auto at = [&](const Hardware& end) { return mean_sum_ms(end, i, result) / mean_sum_ms(end, i, *over_); };
+      const auto at = [&](const Hardware& end) {
+        return mean_in_turn_ms(end, i, result) / mean_in_turn_ms(end, i, *over_);
+      };
       quotient.effects.push_back({ends.rate, at(ends.low), at(ends.high)});
     }
     std::stable_sort(quotient.effects.begin(), quotient.effects.end(),
@@ -171,8 +173,8 @@ std::string times_text(const Report& report, const TimesOptions& options) {
       {"technique", "implementation", "in turn", "nine in ten", "on cores", "at once", "busiest", "uneven", "on chip"}};
   if (!options.over.empty()) rows.front().push_back("in turn over " + options.over);
   for (const Row& row : all) {
-    rows.push_back({row.result.technique, row.implementation.name, ms_text(row.mean.sum_ms),
-                    interval_text(row.interval, ms_text), ms_text(row.mean.scheduled_ms), ms_text(row.mean.overlap_ms),
+    rows.push_back({row.result.technique, row.implementation.name, ms_text(row.mean.in_turn_ms),
+                    interval_text(row.interval, ms_text), ms_text(row.mean.on_cores_ms), ms_text(row.mean.at_once_ms),
                     row.mean.busiest, ratio_text(row.times_longer), room_text(report, row.result)});
     if (!options.over.empty()) rows.back().push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
@@ -192,10 +194,10 @@ Json times_json(const Report& report, const TimesOptions& options) {
     Json of_row = {{"technique", row.result.technique},
                    {"hardware", report.hardware.label},
                    {"implementation", row.implementation.name},
-                   {"sum", row.mean.sum_ms},
-                   {"sum_interval", interval_json(row.interval)},
-                   {"scheduled", row.mean.scheduled_ms},
-                   {"overlap", row.mean.overlap_ms},
+                   {"in_turn", row.mean.in_turn_ms},
+                   {"in_turn_interval", interval_json(row.interval)},
+                   {"on_cores", row.mean.on_cores_ms},
+                   {"at_once", row.mean.at_once_ms},
                    {"busiest", row.mean.busiest},
                    {"imbalance", row.times_longer},
                    {"stages", stages},

@@ -101,9 +101,9 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
   std::vector<SweepColumn> columns = {{"hardware", "", "the described hardware", true}};
   for (const std::string& rate : plan.varied_rates) columns.push_back({"hardware." + rate, "", "as the plan sets it"});
   columns.push_back({"implementation", "", "which units do the work of a stage", true});
-  columns.push_back({"modelled_ms", "ms", "modelled time if all stages overlap; the mean over the frames"});
-  columns.push_back({"modelled_scheduled_ms", "ms", "the same, with bins one by one on cores"});
-  columns.push_back({"modelled_sum_ms", "ms", "the same, one stage after the other"});
+  columns.push_back({"at_once_ms", "ms", "modelled time if all units work at once; the mean over the frames"});
+  columns.push_back({"on_cores_ms", "ms", "the same, with bins one by one on cores"});
+  columns.push_back({"in_turn_ms", "ms", "the same, one stage after the other"});
   columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
   columns.push_back({"energy_mj_low", "mJ", "modelled energy, the least; the mean over the frames"});
   columns.push_back({"energy_mj_high", "mJ", "the same, the most"});
@@ -124,8 +124,8 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   Energy energy;
   for (const FrameReport& frame : report.frames) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
-    overlap += time.overlap_ms, scheduled += time.scheduled_ms, sum += time.sum_ms;
-    if (time.overlap_ms > longest) longest = time.overlap_ms, busiest = time.busiest;
+    overlap += time.at_once_ms, scheduled += time.on_cores_ms, sum += time.in_turn_ms;
+    if (time.at_once_ms > longest) longest = time.at_once_ms, busiest = time.busiest;
     if (has_energy(hardware)) energy += sum_of(modelled_energy(hardware, implementation, frame.stages));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));

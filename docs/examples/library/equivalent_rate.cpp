@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     std::cout << "rmse " << rmse_of(result) << ", equivalent MSAA rate "
               << equivalent_msaa(rmse_of(result), ladder).samples << '\n';
     for (const Implementation& implementation : hardware.implementations)
-      std::cout << implementation.name << ": " << modelled_time(hardware, implementation, {result.stages}).overlap_ms
+      std::cout << implementation.name << ": " << modelled_time(hardware, implementation, {result.stages}).at_once_ms
                 << " ms\n";
   } catch (const std::exception& error) {
     std::cerr << "equivalent_rate: error: " << error.what() << '\n';

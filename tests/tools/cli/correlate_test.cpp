@@ -38,7 +38,7 @@ TEST_F(Correlate, ModelledTimesAreThoseOfTheRuns) {
   const Json json = parse_json_text(succeed({"correlate", file, "--json"}), "correlate");
   const std::vector<Json>& rows = json.at("rows").elements();
   ASSERT_EQ(rows.size(), 4u);
-  for (const auto& [name, key] : {std::pair{"in_turn", "sum"}, {"at_once", "overlap"}}) {
+  for (const auto& [name, key] : {std::pair{"in_turn", "in_turn"}, {"at_once", "at_once"}}) {
     const double one = mean_ms("out", 0, key), eight = mean_ms("out", 1, key), other = mean_ms("other", 0, key);
     const double expected[] = {one, eight / one, eight, eight / other}, measured[] = {2, 3, 1, 4};
     double error = 0;

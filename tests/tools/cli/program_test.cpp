@@ -47,7 +47,7 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
   const Image image = read_exr(folder_ / "out/beam/frame_0001.exr");
   EXPECT_EQ(std::pair(image.width, image.height), std::pair(8u, 16u));
   const Parsed json = parsed(folder_ / "out/report.json");
-  EXPECT_EQ(json["beampipe_report"], 1);
+  EXPECT_EQ(json["beampipe_report"], 2);
   EXPECT_EQ(json["trace"], path("trace.json"));
   EXPECT_GT(json["threads"], 0);
   EXPECT_FALSE(json.contains("msaa_ladder"));

@@ -37,7 +37,7 @@ TEST(ModelledTime, ColoursGoToRops) {
   shade.bytes_written = 3840;
   const auto of = [&](StageId last, std::size_t implementation) {
     const std::vector<StageCounters> stages = {shade, StageCounters{last}};
-    return clocks(titan, modelled_time(titan, titan.implementations.at(implementation), {stages}).sum_ms);
+    return clocks(titan, modelled_time(titan, titan.implementations.at(implementation), {stages}).in_turn_ms);
   };
   EXPECT_NEAR(of(StageId::depth_test, 0), 10, 1e-6);
   EXPECT_NEAR(of(StageId::accumulate, 0), 10, 1e-6);
@@ -52,8 +52,8 @@ TEST(ModelledTime, SetupAndRasterTakeTurnsOnlyInTurn) {
   setup.items_in = raster.items_in = 6000, raster.items_out = 3000;
   const std::vector<StageCounters> stages = {setup, raster};
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {stages});
-  EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
-  EXPECT_NEAR(clocks(titan, time.sum_ms), 2000, 1e-6);
+  EXPECT_NEAR(clocks(titan, time.at_once_ms), 1000, 1e-6);
+  EXPECT_NEAR(clocks(titan, time.in_turn_ms), 2000, 1e-6);
 }
 
 TEST(ModelledTime, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
@@ -61,8 +61,8 @@ TEST(ModelledTime, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
   const std::vector<StageCounters> stages = {stage(StageId::sample_raster), stage(StageId::compose),
                                              stage(StageId::compose)};
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {stages});
-  EXPECT_NEAR(clocks(titan, time.sum_ms), 1000 + 10 + 10, 1e-3);
-  EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
+  EXPECT_NEAR(clocks(titan, time.in_turn_ms), 1000 + 10 + 10, 1e-3);
+  EXPECT_NEAR(clocks(titan, time.at_once_ms), 1000, 1e-6);
   EXPECT_EQ(time.busiest, "raster");
   ASSERT_EQ(time.stages.size(), 3u);
   EXPECT_EQ(time.stages[1].stage, StageId::compose);
@@ -77,7 +77,7 @@ TEST(ModelledTime, ShadersShareTheirUnitBetweenStages) {
   busy.ops.bit = 5120 * 100;
   const std::vector<StageCounters> stages = {busy, busy};
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {stages});
-  EXPECT_NEAR(clocks(titan, time.overlap_ms), 200, 1e-6);
+  EXPECT_NEAR(clocks(titan, time.at_once_ms), 200, 1e-6);
   EXPECT_EQ(time.busiest, "shader");
 }
 
@@ -86,9 +86,9 @@ TEST(ModelledTime, LanesThatAStageNamesTwiceWorkOnce) {
   StageCounters busy{StageId::shade};
   busy.ops.bit = 5120 * 100;
   const std::vector<StageCounters> stages = {busy};
-  const double once = modelled_time(titan, titan.implementations.at(0), {stages}).overlap_ms;
+  const double once = modelled_time(titan, titan.implementations.at(0), {stages}).at_once_ms;
   titan.implementations.at(0).units.at(StageId::shade).push_back("shader");
-  EXPECT_EQ(modelled_time(titan, titan.implementations.at(0), {stages}).overlap_ms, once);
+  EXPECT_EQ(modelled_time(titan, titan.implementations.at(0), {stages}).at_once_ms, once);
 }
 
 // 9600 positions of masks at 9216 per clock, but 960 pairs at 96; 1000 comparisons at 96; 7680 contested positions at
@@ -254,7 +254,7 @@ TEST(ModelledTime, CoresWaitForTheirBusiestButShareDram) {
   const auto scheduled = [&](double dram_clocks) {
     compose.dram_bytes = static_cast<std::uint64_t>(dram_clocks * 448.7 * 0.77);
     const std::vector<StageCounters> stages = {setup, compose};
-    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, 0, bins}).scheduled_ms);
+    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, 0, bins}).on_cores_ms);
   };
   EXPECT_NEAR(scheduled(0), 1000 + 40, 1e-6);
   EXPECT_NEAR(scheduled(20), 1000 + 40, 1e-6);
@@ -268,7 +268,7 @@ TEST(ModelledTime, ShadingCostsAreAddedToInvocations) {
     const Hardware titan = with_shading_costs(titan_v(), material, light);
     std::vector<StageCounters> all;
     for (const StageId id : stages) all.emplace_back(StageCounters{id}).lanes_issued = 512;
-    return clocks(titan, modelled_time(titan, titan.implementations.at(1), {all}).sum_ms);
+    return clocks(titan, modelled_time(titan, titan.implementations.at(1), {all}).in_turn_ms);
   };
   const double quads = 512 / 96.0;  // which `shade` takes without any cost
   EXPECT_NEAR(time_of({}, {}, {StageId::shade}), quads, 1e-6);

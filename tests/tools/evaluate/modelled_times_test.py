@@ -126,7 +126,7 @@ class ModelledTimesTest(unittest.TestCase):
                 on_cores = max(before.values()) + max(ms * longer if unit in OF_CORES else ms
                                                       for unit, ms in of_bins.items())
                 at_once = max(before.get(unit, 0) + of_bins.get(unit, 0) for unit in before | of_bins)
-                for key, expected in (("sum", in_turn), ("scheduled", on_cores), ("overlap", at_once)):
+                for key, expected in (("in_turn", in_turn), ("on_cores", on_cores), ("at_once", at_once)):
                     compared.append((f"{part} {result['technique']} {way} {key}", frame["modelled_ms"][way][key], expected))
         for name, found, expected in compared:
             self.assertAlmostEqual(found, expected, delta=1e-9 * expected, msg=name)

@@ -13,14 +13,14 @@ namespace beampipe::hostile_report_test {
 
 // Compared, with modelled times.
 const std::string kReport =
-    R"({"beampipe_report": 1, "trace": "dots.json", "msaa_ladder": [{"samples": 1, "rmse": 0.1}],
+    R"({"beampipe_report": 2, "trace": "dots.json", "msaa_ladder": [{"samples": 1, "rmse": 0.1}],
   "hardware": {"clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
                "implementations": {"shaders": {}}},
   "results": [{"technique": "beam", "framebuffer_bytes_per_pixel": 6, "peak_bytes_per_pixel": 6, "framebuffer": [],
     "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2}, "equivalent_msaa": 8,
     "inspections": "beam/inspections.json",
     "frames": [{"index": 0, "image": "beam/frame_0000.exr",
-      "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
+      "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"at_once": 2, "in_turn": 3}},
       "dram_bytes": 800, "stages": [{"stage": "compose", "ops": {"total": 3}, "bytes_read": 5, "bytes_written": 2,
         "dram_bytes": 10, "modelled_ms": {"shaders": 0.5}}]}]}]})";
 
@@ -52,7 +52,7 @@ class HostileReport : public RunInFolder {
 };
 
 TEST_F(HostileReport, TechniquesAndFramesMustBeThere) {
-  EXPECT_EQ(refusal(R"({"beampipe_report": 1, "trace": "a", "results": [{"technique": "beam", "frames": [],
+  EXPECT_EQ(refusal(R"({"beampipe_report": 2, "trace": "a", "results": [{"technique": "beam", "frames": [],
                        "peak_bytes_per_pixel": 6}]})"),
             "not a report of beampipe: expected a technique with at least one frame, found none of \"beam\"");
   EXPECT_EQ(refusal(replaced(kReport, R"("implementations": {"shaders": {}})", R"("implementations": {})")),

@@ -20,7 +20,7 @@ std::string report_text(const std::string& spec, int bytes, double emr, double r
            R"(, "error": {"rmse": )" + std::to_string(error) + R"(}, "equivalent_msaa": )" + std::to_string(n) + keys +
            R"(, "frames": [{"wall_ms": {"median": )" + std::to_string(time) + "}}]}";
   };
-  return R"({"beampipe_report": 1, "trace": "some/where/rods.json",
+  return R"({"beampipe_report": 2, "trace": "some/where/rods.json",
              "msaa_ladder": [{"samples": 1, "rmse": 0.1}, {"samples": 8, "rmse": 0.03}], "results": [)" +
          result(spec, bytes, emr, rmse, ms, more) + "," + result("msaa:8", 80, 8, 0.03, 20, "") + "," +
          result("msaa:1", 10, 1, 0.1, 10, "") + "," + result("reference", 65536, 8, 0, 1000, "") + "]}";
@@ -73,7 +73,7 @@ TEST_F(PlotTest, TechniquesThatDifferInThePoolAreALine) {
            R"(, "error": {"rmse": 0.1}, "equivalent_msaa": 9, "frames": [{"wall_ms": {"median": 1}}]},)";
   };
   const ReportFile report = read_report(make_report(
-      "a", R"({"beampipe_report": 1, "trace": "rods.json", "results": [)" + result("beam:bits=64,pool=30", 90) +
+      "a", R"({"beampipe_report": 2, "trace": "rods.json", "results": [)" + result("beam:bits=64,pool=30", 90) +
                result("beam:bits=64,pool=16", 70) + result("beam:pool=128,bin=8", 400) + result("beam", 150) +
                result("beam:pool=96", 200) + result("beam:bin=8", 160) + R"({"technique": "z3",
                "peak_bytes_per_pixel": 50, "frames": [{"wall_ms": {"median": 1}}]}]})"));
@@ -171,9 +171,9 @@ TEST_F(PlotTest, PngDecodesAndIsNotBlank) {
 
 TEST_F(PlotTest, ErrorsAreOneLine) {
   make_report("good", report_text("beam", 42, 100, 0.01, 50));
-  make_report("broken", "{\"beampipe_report\": 1, ");
+  make_report("broken", "{\"beampipe_report\": 2, ");
   make_report("other", R"({"beampipe_trace": 1})");
-  make_report("run", R"({"beampipe_report": 1, "trace": "t.json", "results": [{"technique": "beam",
+  make_report("run", R"({"beampipe_report": 2, "trace": "t.json", "results": [{"technique": "beam",
       "peak_bytes_per_pixel": 42, "frames": [{"wall_ms": {"median": 3}}]}]})");
   std::filesystem::create_directory(folder_ / "empty");
   expect_error({"plot", path("good"), "-o", path("plot.pdf")}, 2, "ends in .svg or .png");

@@ -284,7 +284,7 @@ class ReportPage(PageTest):
             else:
                 self.assertEqual(float(row["dram_bytes"][0]), mean(result, lambda frame: frame["dram_bytes"]))
             for way in ["shaders", "fixed_function"]:
-                for kind in ["overlap", "scheduled", "sum"]:
+                for kind in ["at_once", "on_cores", "in_turn"]:
                     value, text = row[f"modelled_ms_{way}_{kind}"]
                     if result["technique"] == "reference":
                         self.assertEqual((value, text), ("", "–"), "it is not for hardware")
@@ -320,7 +320,7 @@ class ReportPage(PageTest):
             "wall_ms_max": of("wall_ms", "max"), "runs": of("wall_ms", "runs"), "rmse": of("error", "rmse"),
             **{key: of("error", key) for key in MEASURES},
             **{f"modelled_ms_{way}_{kind}": of("modelled_ms", way, kind)
-               for way in ["shaders", "fixed_function"] for kind in ["overlap", "scheduled", "sum"]},
+               for way in ["shaders", "fixed_function"] for kind in ["at_once", "on_cores", "in_turn"]},
             **{f"energy_mj_{part}_{end}": of("energy_mj", part, end)
                for part in ["operations", "on_chip", "l2", "dram"] for end in ["low", "high"]},
             **{f"energy_mj_{part}_{way}_{end}": of("energy_mj", part, way, end) for part in ["instructions", "total"]
@@ -354,7 +354,7 @@ class ReportPage(PageTest):
                 for name, unit, value in [
                         ("DRAM", " MB", lambda result: mean(result, lambda frame: frame["dram_bytes"]) / 1e6),
                         ("on chip", " B/pixel", lambda result: result["on_chip_bytes_per_pixel"]),
-                        ("time", " ms", lambda result: mean(result, lambda frame: frame["modelled_ms"][way]["overlap"])),
+                        ("time", " ms", lambda result: mean(result, lambda frame: frame["modelled_ms"][way]["at_once"])),
                         ("RMSE", "", lambda result: result["error"]["rmse"]),
                         ("EMR", "", lambda result: result["equivalent_msaa"])]:
                     bound = "≥ " if name == "EMR" and result["equivalent_msaa_is_lower_bound"] else ""
@@ -391,9 +391,9 @@ class ReportPage(PageTest):
                 self.assertAlmostEqual(sum(number(stage[key]) for stage in stages) / number(technique[key]), 1, 12, key)
             for way in ["shaders", "fixed_function"]:
                 total = sum(number(stage[f"modelled_ms_{way}"]) for stage in stages)
-                self.assertAlmostEqual(total / number(technique[f"modelled_ms_{way}_sum"]), 1, 12, way)
-            for key in ["logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes", "modelled_ms_shaders_sum",
-                        "modelled_ms_fixed_function_overlap"]:
+                self.assertAlmostEqual(total / number(technique[f"modelled_ms_{way}_in_turn"]), 1, 12, way)
+            for key in ["logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes", "modelled_ms_shaders_in_turn",
+                        "modelled_ms_fixed_function_at_once"]:
                 self.assertAlmostEqual(sum(number(frame[key]) for frame in frames) / len(frames) / number(technique[key]), 1, 12, key)
 
     def test_stage_numbers_equal_the_means_of_the_report(self):
@@ -474,8 +474,8 @@ class ReportPage(PageTest):
         points = lambda name: {point["label"]: (point["x"], point["y"])
                                for series in figures[name]["series"] for point in series["points"]}
         times = {"speed": lambda frame: frame["wall_ms"]["median"],
-                 "speed_shaders": lambda frame: frame["modelled_ms"]["shaders"]["overlap"],
-                 "speed_fixed_function": lambda frame: frame["modelled_ms"]["fixed_function"]["overlap"]}
+                 "speed_shaders": lambda frame: frame["modelled_ms"]["shaders"]["at_once"],
+                 "speed_fixed_function": lambda frame: frame["modelled_ms"]["fixed_function"]["at_once"]}
         for name, time in times.items():
             found = points(name)
             self.assertEqual(set(found), set(self.results))
@@ -493,9 +493,9 @@ class ReportPage(PageTest):
             self.assertEqual(plot["categories"], list(self.results))
             for i, result in enumerate(self.results.values()):
                 self.assertAlmostEqual(sum(part["values"][i] for part in plot["parts"]),
-                                       mean(result, lambda frame: frame["modelled_ms"][way]["sum"]), 12)
+                                       mean(result, lambda frame: frame["modelled_ms"][way]["in_turn"]), 12)
                 self.assertAlmostEqual(plot["marks"]["values"][i],
-                                       mean(result, lambda frame: frame["modelled_ms"][way]["overlap"]), 12)
+                                       mean(result, lambda frame: frame["modelled_ms"][way]["at_once"]), 12)
         split = figures["causes"]
         for i, spec in enumerate(split["categories"]):
             self.assertEqual({part["name"]: part["values"][i] for part in split["parts"]},

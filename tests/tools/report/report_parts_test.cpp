@@ -16,7 +16,7 @@
 namespace beampipe::report_parts_test {
 
 // A report with two frames of one technique, which has one stage, and of the reference.
-constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", "threads": 1, "simd": "AVX2",
+constexpr const char* kReport = R"({"beampipe_report": 2, "trace": "dots.json", "threads": 1, "simd": "AVX2",
   "hardware": {"name": "Some GPU", "clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
                "memory_system": {"parameters": {}}, "implementations": {"shaders": {}}},
   "claims": [{"name": "beam, \"RGB16F\"", "unit": "bytes", "published_low": 36, "published_high": 42, "ours": 42,
@@ -29,13 +29,13 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
     "equivalent_msaa": 8, "equivalent_msaa_is_lower_bound": true,
     "frames": [
      {"index": 3, "image": "beam/frame_0003.exr", "picture": "beam/frame_0003.png", "counters": "beam/frame_0003_counters.exr",
-      "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
+      "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"at_once": 2, "in_turn": 3}},
       "dram_bytes": 800,
       "stages": [{"stage": "compose", "ops": {"total": 3000000, "bit": 2}, "bytes_read": 500000,
                   "bytes_written": 250000, "dram_bytes": 1000000, "lanes_used": 3, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.5}}]},
      {"index": 4, "image": "beam/frame_0004.exr", "picture": "beam/frame_0004.png", "wall_ms": {"median": 8, "min": 8, "max": 8, "runs": 1},
-      "modelled_ms": {"shaders": {"overlap": 4, "sum": 5}}, "dram_bytes": 1200,
+      "modelled_ms": {"shaders": {"at_once": 4, "in_turn": 5}}, "dram_bytes": 1200,
       "stages": [{"stage": "compose", "ops": {"total": 1000000, "bit": 3}, "bytes_read": 200000,
                   "bytes_written": 50000, "dram_bytes": 1000000, "lanes_used": 1, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.3}}]}]},
@@ -90,8 +90,8 @@ TEST_F(ReportParts, StagesAreMeansOverFrames) {
                 {"sector_bytes", "no such column"}});  // none has values
   const Table& frames = named(tables, "frames");
   ASSERT_EQ(frames.rows.size(), 4u);
-  expect_cells(frames, 1, {{"modelled_ms_shaders_sum", 5}, {"dram_bytes", 1200}});
-  expect_cells(frames, 2, {{"modelled_ms_shaders_sum", nullptr}});
+  expect_cells(frames, 1, {{"modelled_ms_shaders_in_turn", 5}, {"dram_bytes", 1200}});
+  expect_cells(frames, 2, {{"modelled_ms_shaders_in_turn", nullptr}});
 }
 
 // A frame has the stages for alpha only where something needs them.
@@ -110,14 +110,14 @@ TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   const Table& techniques = named(tables, "techniques");
   expect_cells(techniques, 0,
                {{"wall_ms", 6.0},
-                {"modelled_ms_shaders_overlap", 3.0},
-                {"modelled_ms_shaders_sum", 4.0},
+                {"modelled_ms_shaders_at_once", 3.0},
+                {"modelled_ms_shaders_in_turn", 4.0},
                 {"dram_bytes", 1000.0},  // the mean over the frames
                 {"emr_bound", "at least"},
                 {"peak_bytes_per_pixel", 49},
                 {"msaa_bytes_per_pixel", 80.0}});
   // No hardware is modelled for the reference, and it has no error.
-  expect_cells(techniques, 1, {{"modelled_ms_shaders_overlap", nullptr}, {"rmse", nullptr}});
+  expect_cells(techniques, 1, {{"modelled_ms_shaders_at_once", nullptr}, {"rmse", nullptr}});
 }
 
 TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
@@ -223,7 +223,7 @@ std::string report_of(const std::vector<std::string>& specs, const std::string& 
   for (const std::string& spec : specs)
     results += (results.empty() ? "" : ",") + (R"({"technique": ")" + spec + R"(", "peak_bytes_per_pixel": 80)" + more +
                                                R"(, "frames": [{"wall_ms": {"median": 1}}]})");
-  return R"({"beampipe_report": 1, "trace": "dots.json", "results": [)" + results + "]}";
+  return R"({"beampipe_report": 2, "trace": "dots.json", "results": [)" + results + "]}";
 }
 
 TEST_F(ReportParts, TheBaselineIsMsaa8OrElseAnotherMsaaOrElseTheFirst) {
@@ -239,8 +239,8 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   std::string text = kReport;
   text.insert(text.find("\"peak_bytes_per_pixel\""), R"("on_chip_bytes_per_pixel": 2.5, )");
   text.insert(text.find("\"dram_bytes\": 800"), R"("bin_pixels": 1024, )");
-  text.replace(text.find("\"sum\": 3"), 8, R"("sum": 3, "busiest": "dram")");
-  text.replace(text.find("\"sum\": 5"), 8, R"("sum": 5, "busiest": "shader")");
+  text.replace(text.find("\"in_turn\": 3"), 8, R"("in_turn": 3, "busiest": "dram")");
+  text.replace(text.find("\"in_turn\": 5"), 8, R"("in_turn": 5, "busiest": "shader")");
   const Json cards = report_cards(read(text));
   EXPECT_EQ(cards.at("implementations"), Json::array({"shaders"}));
   ASSERT_EQ(cards.at("cards").size(), 1u) << "the reference has none";
@@ -250,7 +250,7 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   EXPECT_EQ(card.at("on_chip_bytes"), 2560.0);
   EXPECT_EQ(card.at("bytes_per_pixel"), 49.0);
   EXPECT_EQ(card.at("modelled_ms").at("shaders"),
-            (Json{{"overlap", 3.0}, {"scheduled", 0.0}, {"sum", 4.0}, {"busiest", "dram, shader"}}));
+            (Json{{"at_once", 3.0}, {"on_cores", 0.0}, {"in_turn", 4.0}, {"busiest", "dram, shader"}}));
   EXPECT_EQ(card.at("rmse"), 0.02);
   EXPECT_EQ(card.at("emr"), 8.0);
   EXPECT_EQ(card.at("emr_bound"), "at least");

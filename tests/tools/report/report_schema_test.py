@@ -128,7 +128,7 @@ class SchemaTest(unittest.TestCase):
     def test_schemas_refuse_what_is_wrong(self):
         report = self.reports["compare"]
         for path, value in [
-                (["no_such_key"], 1), (["beampipe_report"], 2), (["threads"], 0), (["threads"], None),
+                (["no_such_key"], 1), (["beampipe_report"], 1), (["threads"], 0), (["threads"], None),
                 (["made_by", "trace"], "fence"), (["results", 0, "technique"], ""), (["results", 0, "no_such_key"], 1),
                 (["results", 0, "frames", 0, "index"], -1), (["results", 0, "frames", 0, "stages", 0, "ops", "add"], 1.5),
                 (["results", 0, "frames", 0, "stages", 0, "no_such_counter"], 1),

@@ -58,7 +58,7 @@ Report compared_report() {
 
 TEST(ReportJson, HasTheKeysOfTheContract) {
   const Json json = report_json(sample_report());
-  EXPECT_EQ(json["beampipe_report"], 1);
+  EXPECT_EQ(json["beampipe_report"], 2);
   EXPECT_EQ(json["trace"], "a.json");
   EXPECT_EQ(json["version"], "1.2.3");
   EXPECT_EQ(json["simd"], "AVX2");

@@ -10,8 +10,8 @@ function cardRows(card, implementation) {
     ["DRAM", card.dram_bytes, bytesText, []],
     ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin`]],
     ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, ["framebuffer, A-buffer"]],
-    ["time", time?.overlap, (value) => `${shortText(value)} ms`,
-      [`bottleneck: ${time?.busiest}`, `on cores: ${shortText(time?.scheduled ?? 0)} ms`, `in turn: ${shortText(time?.sum ?? 0)} ms`]],
+    ["time", time?.at_once, (value) => `${shortText(value)} ms`,
+      [`bottleneck: ${time?.busiest}`, `on cores: ${shortText(time?.on_cores ?? 0)} ms`, `in turn: ${shortText(time?.in_turn ?? 0)} ms`]],
     ["RMSE", card.rmse, shortText, []],
     ["EMR", card.emr, (value) => bound[card.emr_bound] + shortText(value), []],
   ];
