@@ -86,9 +86,9 @@ struct FrameResult {
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;   // all but the A-buffer
   std::uint32_t bin_pixels = 0;  // of the largest bin
-  // Of the stages of each bin that can be done in shaders, in the order in which bins are drawn, row by row: how
-  // unevenly the work of cores is spread.
-  std::vector<std::uint64_t> bin_operations;
+  // Of each bin, in the order in which bins are drawn, row by row, operations of the stages that can be done in shaders
+  // and invocations of fragment shaders: how unevenly the work of cores is spread.
+  std::vector<std::uint64_t> bin_operations, bin_invocations;
   CacheReach cache_reach;
 };
 

@@ -11,16 +11,15 @@ void BinStage::copies(std::string_view from, std::string_view to, int times, std
 }
 
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
-         const std::vector<Stage>& stages, const Framebuffer& framebuffer)
+         const std::vector<Stage>& stages, const Framebuffer& framebuffer, std::size_t bins)
     : context(frame_context),
       tile(bin_tile),
       list(triangles),
       timer_(context.sinks.timeline, tile),
-      memory_(context.run.memory) {
+      memory_(framebuffer.memory_of_bin(context.run.memory, bins)) {
   if (context.sinks.weights || context.sinks.histories) observer_.emplace(context, tile);
   memory_.reach = &cache_reach_;
   if (context.sinks.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
-  memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
   if (keeps_pixels_on_chip()) holds(kOpenPixels, tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
   for (const Stage stage : stages) stages_.push_back(StageCounters{stage});
@@ -30,6 +29,13 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
     cache_reach_.add({.l1 = bytes, .l2 = bytes});
     texture_fetches_.emplace(memory_);
   }
+}
+
+CacheReach Bin::cache_reach() const {
+  CacheReach reach = cache_reach_;
+  const std::uint32_t all = context.run.memory.rop.bytes, part = memory_.rop.bytes;
+  reach.rop *= (all + part - 1) / part;
+  return reach;
 }
 
 BinStage Bin::stage(StageId id, Pass pass) {

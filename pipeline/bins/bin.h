@@ -64,9 +64,10 @@ class Bin {
   const Tile& tile;
   const TriangleList& list;
 
-  // `stages`: in the order of the pipeline. Everything that is passed must outlive the bin.
+  // `stages`: in the order of the pipeline. `bins`: how many the frame has. Everything that is passed must outlive the
+  // bin.
   Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
-      const std::vector<Stage>& stages, const Framebuffer& framebuffer);
+      const std::vector<Stage>& stages, const Framebuffer& framebuffer, std::size_t bins);
   Bin(const Bin&) = delete;
   Bin& operator=(const Bin&) = delete;
 
@@ -142,7 +143,8 @@ class Bin {
   const std::map<std::string, std::uint64_t>& buffer_peaks() const { return buffer_peaks_; }
   std::uint64_t a_buffer_bytes() const { return a_buffer_bytes_; }
   const KeptInL2& kept_in_l2() const { return kept_in_l2_; }
-  const CacheReach& cache_reach() const { return cache_reach_; }
+  // Of the GPU's caches, of which the bin may have a part.
+  CacheReach cache_reach() const;
   int geometry_passes(Pass pass) const { return pass == Pass::main ? std::max(geometry_passes_, 1) : prepasses_; }
 
  private:

@@ -116,14 +116,14 @@ struct EmptyBin {
 class EmptyBins {
  public:
   EmptyBins(const FrameContext& context, const Framebuffer& framebuffer, const std::vector<Stage>& stages,
-            const BinRenderer& render)
-      : context_(context), framebuffer_(framebuffer), stages_(stages), render_(render) {}
+            const BinRenderer& render, std::size_t bins)
+      : context_(context), framebuffer_(framebuffer), stages_(stages), render_(render), frame_bins_(bins) {}
 
   // Not thread-safe.
   void prepare(const Tile& tile) {
     std::unique_ptr<EmptyBin>& empty = bins_[size_of(tile)];
     if (empty) return;
-    empty.reset(new EmptyBin{.bin = {context_, tile, list_, stages_, framebuffer_}});
+    empty.reset(new EmptyBin{.bin = {context_, tile, list_, stages_, framebuffer_, frame_bins_}});
     empty->bin.render(render_);
     empty->look_at_result();
   }
@@ -145,6 +145,7 @@ class EmptyBins {
   const Framebuffer& framebuffer_;
   const std::vector<Stage>& stages_;
   const BinRenderer& render_;
+  std::size_t frame_bins_;
   const TriangleList list_;
   std::map<Size, std::unique_ptr<EmptyBin>> bins_;
 };
@@ -162,6 +163,7 @@ class FrameRecorder {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, {}};
     result_.bin_operations.resize(bins);
+    result_.bin_invocations.resize(bins);
     kept_in_l2_.resize(bins);
     for (const Stage stage : stages) result_.stages.push_back(StageCounters{stage});
   }
@@ -208,8 +210,10 @@ class FrameRecorder {
  private:
   // `has_counts`, `has_picture`: are the pixel counters and the picture other than what the frame starts with?
   void add(const Bin& bin, const Tile& tile, std::size_t index, bool has_counts, bool has_picture) {
-    for (const StageCounters& stage : bin.stages())
+    for (const StageCounters& stage : bin.stages()) {
       if (info_of(stage.stage.id).can_be_shader) result_.bin_operations[index] += stage.ops.total();
+      if (stage.stage.id == StageId::shade) result_.bin_invocations[index] += stage.lanes_issued;
+    }
     kept_in_l2_[index] = bin.kept_in_l2();
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
@@ -338,7 +342,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
-  EmptyBins empty_bins(context, framebuffer, stages, render);
+  EmptyBins empty_bins(context, framebuffer, stages, render, grid.tiles.size());
   const bool shares_empty_bins = !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
@@ -358,7 +362,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
         recorder.add_empty(empty_bins.like(tile), tile, band.first + i);
         return;
       }
-      Bin bin(context, grid.tiles[band.first + i], lists[i], stages, framebuffer);
+      Bin bin(context, grid.tiles[band.first + i], lists[i], stages, framebuffer, grid.tiles.size());
       bin.render(render);
       if (BinObserver* const observer = bin.observer()) observer->finish(bin.list, plan.order, bin.picture());
       recorder.add(bin, band.first + i);

@@ -1,6 +1,7 @@
 // What a technique stores for each pixel while its bin is drawn, and where: in memory, behind caches, or on chip.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -40,6 +41,14 @@ struct Framebuffer {
 
   // Are the pixels of a bin on chip while it is drawn? Only if all that the pixels of one bin store fits there.
   bool is_on_chip(const MemoryParameters& memory) const;
+
+  // Should the pixels be on chip, although not even one bin fits?
+  bool finds_no_room(const MemoryParameters& memory) const { return wants_chip(memory) && !is_on_chip(memory); }
+
+  // What one of the frame's `bins` has of the memory system: its pixels' place, and the caches of ROPs. These are those
+  // of the GPU, which draws one bin after the other if it keeps pixels in memory; but where pixels find no room, cores
+  // draw several bins at the same time, and share these caches among them.
+  MemoryParameters memory_of_bin(const MemoryParameters& memory, std::size_t bins) const;
 
   // The surfaces that are in memory: all of them, or, where pixels are on chip, the picture and what outlives the bin.
   std::vector<Surface> in_memory(const MemoryParameters& memory) const;

@@ -46,7 +46,7 @@ void check(const Hardware& hardware) {
   const std::vector<std::uint64_t> bins = {1, std::uint64_t{1} << 40};
   for (const Implementation& implementation : hardware.implementations)
     for (const double bin_bytes : {0.0, 1e6}) {
-      const ModelledTime time = modelled_time(hardware, implementation, {stages, bin_bytes, bins});
+      const ModelledTime time = modelled_time(hardware, implementation, {stages, bin_bytes, 256, bins, bins});
       require(std::isfinite(time.in_turn_ms) && std::isfinite(time.on_cores_ms));
       require(time.at_once_ms > 0 && time.at_once_ms <= time.in_turn_ms * (1 + 1e-9));
     }

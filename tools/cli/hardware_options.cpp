@@ -53,8 +53,13 @@ Hardware with_costs(const Hardware& hardware, const HardwareOptions& options) {
   const auto cost = [](const std::string& option, const std::string& text, const ShadingCost& described) {
     return text.empty() ? described : parse_cost(option, text);
   };
-  return with_shading_costs(hardware, cost("--material-cost", options.material_cost, hardware.material),
-                            cost("--light-cost", options.light_cost, hardware.light));
+  const Hardware priced =
+      with_shading_costs(hardware, cost("--material-cost", options.material_cost, hardware.material),
+                         cost("--light-cost", options.light_cost, hardware.light));
+  if (const auto conflict = find_conflict(priced))
+    throw UsageError("--material-cost, --light-cost: expected " + std::string(conflict->rate) + " of the hardware " +
+                     conflict->expected);
+  return priced;
 }
 
 }  // namespace beampipe

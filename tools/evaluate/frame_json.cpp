@@ -160,14 +160,18 @@ Form<PixelCounterStats> statistics_form() {
 
 // Times of an implementation.
 Form<ModelledTime> modelled_form() {
-  return ObjectForm<ModelledTime>()
-      .written("at_once", &ModelledTime::at_once_ms, form::amount(),
-               "All stages at once: the time of the busiest unit.")
-      .written("on_cores", &ModelledTime::on_cores_ms, form::amount(),
-               "Bins one by one on cores, in their order, each with all its stages at once.")
-      .written("in_turn", &ModelledTime::in_turn_ms, form::amount(),
-               "One stage after the other: the sum over the stages.")
-      .written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit.");
+  ObjectForm<ModelledTime> form;
+  for (const TimeKind& kind : kTimes) form.written(kind.key, kind.ms, form::amount(), kind.meaning);
+  return form.written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit of all at once.");
+}
+
+Form<BinSpread> spread_form() {
+  return ObjectForm<BinSpread>()
+      .written("busiest_core", &BinSpread::busiest_core, form::amount(),
+               "Work of the busiest core over the mean of cores, bins in their order on the core that is free first.")
+      .written("p99", &BinSpread::p99, form::amount(),
+               "Work of the bin that 99 % do not exceed, over the mean of bins.")
+      .written("most", &BinSpread::most, form::amount(), "Work of the fullest bin, over the mean of bins.");
 }
 
 std::optional<Json> saved_of(const FrameOf& of) {
@@ -205,7 +209,9 @@ Form<FrameOf> make_frame_form() {
                "The largest size of the A-buffer.")
       .written("bin_pixels", member(&Frame::bin_pixels), form::count(), "Pixels of the largest bin.")
       .written("bin_operations", filled(&Frame::bin_operations), form::list(form::count()),
-               "Operations of each bin in stages that can be done in shaders, row by row.");
+               "Operations of each bin in stages that can be done in shaders, row by row.")
+      .written("bin_invocations", filled(&Frame::bin_invocations), form::list(form::count()),
+               "Invocations of fragment shaders that each bin starts, row by row.");
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
     for (const CounterInfo& counter : stage_counters())
       if (counter.name == std::string_view(column))
@@ -219,6 +225,7 @@ Form<FrameOf> make_frame_form() {
                "Work that was not done, by name (`beampipe counters`).")
       .written("stages", member(&Frame::stages), form::list(stage_form()), "The stages, in the order of the pipeline.")
       .added("modelled_ms", form::by_name(modelled_form()).schema, "Modelled times, by implementation.")
+      .added("bin_spread", spread_form().schema, "How unevenly bins fill the cores.")
       .added("energy_mj", energy_schema(), "Modelled energy, in millijoules: the sum over the stages.");
 }
 
@@ -264,6 +271,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   Json json = frame_form().write(of);
   if (of.all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
   std::vector<Json>& stages = json["stages"].elements();
+  if (!frame.bin_operations.empty()) json["bin_spread"] = spread_form().write(bin_spread(hardware, frame.work()));
   for (const Implementation& implementation : hardware.implementations) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
     json["modelled_ms"][implementation.name] = modelled_form().write(time);
@@ -299,8 +307,10 @@ FrameReport frame_of(const Json& json) {
   frame.wall_ms = wall_time_of(json.at("wall_ms"));
   frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes").get<std::uint64_t>();
   frame.bin_pixels = json.at("bin_pixels").get<std::uint64_t>();
-  if (const Json* operations = json.find("bin_operations"))
-    for (const Json& of_bin : operations->elements()) frame.bin_operations.push_back(of_bin.get<std::uint64_t>());
+  for (const auto& [key, of_bins] :
+       {std::pair{"bin_operations", &frame.bin_operations}, {"bin_invocations", &frame.bin_invocations}})
+    if (const Json* const list = json.find(key))
+      for (const Json& of_bin : list->elements()) of_bins->push_back(of_bin.get<std::uint64_t>());
   for (const Json& buffer : json.at("buffers").elements())
     if (buffer.at("name") != kABuffer)
       frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),

@@ -56,8 +56,9 @@ struct FrameReport {
   std::vector<StageCounters> stages;
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
-  std::uint64_t bin_pixels = 0;               // of the largest bin
-  std::vector<std::uint64_t> bin_operations;  // as in FrameResult
+  std::uint64_t bin_pixels = 0;  // of the largest bin
+  // As in FrameResult.
+  std::vector<std::uint64_t> bin_operations, bin_invocations;
 
   // What the pixels of a bin take on chip; 0 if they are in memory.
   double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }
@@ -68,7 +69,9 @@ struct FrameReport {
   }
 
   // What the frame's modelled time depends on. This must outlive it.
-  FrameWork work() const { return {stages, open_pixel_bytes(), bin_operations}; }
+  FrameWork work() const {
+    return {stages, open_pixel_bytes(), static_cast<double>(bin_pixels), bin_operations, bin_invocations};
+  }
 
   double peak_bytes_of(std::string_view buffer) const;  // 0 if there is none of this name
 };

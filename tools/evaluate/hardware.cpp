@@ -22,7 +22,7 @@ Form<ShadingCost> cost_form() {
       .required("operations", &ShadingCost::operations, form::number(0, kMost), "Multiplications and additions.")
       .required("fetches", &ShadingCost::fetches, form::number(0, kMost), "Bilinear probes of a texture.")
       .required("registers", &ShadingCost::registers, form::number(0, kMost),
-                "Registers that an invocation takes; the fewer invocations fit, the slower they are.");
+                "Registers that an invocation takes; the fewer fit, the less latency they hide.");
 }
 
 bool is_shader(const std::string& unit) { return unit == "shader" || unit == "shading"; }
@@ -37,7 +37,7 @@ bool is_fixed_function(const std::string& unit) {
 // May the stage name the unit? The counters of other stages would say nothing to it. Textures and the rates of
 // triangles, quads and exports serve both kinds of stages, and L2 and DRAM all of them, named or not.
 bool can_do(const std::string& unit, const StageInfo& stage) {
-  if (unit == "l2" || unit == "dram") return false;
+  if (unit == "l2" || unit == "dram" || unit == "latency") return false;
   return is_shader(unit) ? stage.can_be_shader : !is_fixed_function(unit) || stage.can_be_fixed_function;
 }
 
@@ -47,7 +47,7 @@ Form<UnitsOfStages> units_form() {
   ObjectForm<UnitsOfStages> object("the name of a stage");
   for (const StageInfo& stage : stage_list()) {
     if (stage.id == StageId::reference_raster) continue;
-    std::vector<std::string> names = {kOnChipMark};
+    std::vector<std::string> names;
     for (const std::string& name : unit_names())
       if (can_do(name, stage)) names.push_back(name);
     const Form<std::vector<std::string>> list = form::list(form::one_of(names), "unit");
@@ -65,10 +65,8 @@ Form<UnitsOfStages> units_form() {
 Form<Implementation> implementation_form() {
   return ObjectForm<Implementation>()
       .add(form::unused<Implementation>("description", false, form::text(), "What it is, for people."))
-      .required(
-          "units", &Implementation::units, units_form(),
-          "By the name of a stage (`beampipe counters`): its units. on_chip is no unit; it marks stages that work "
-          "on what a bin has on chip.");
+      .required("units", &Implementation::units, units_form(),
+                "By the name of a stage (`beampipe counters`): its units.");
 }
 
 Form<RateRange> range_form(const Form<double>& number) {
@@ -93,9 +91,9 @@ Form<std::map<std::string, RateRange>> energy_form() {
       });
 }
 
-// The rates lie in their ranges, and no more of DRAM's peak is reached than there is.
-void expect_in_ranges(const JsonCursor& at, const Hardware& hardware) {
-  if (hardware.rates.at(kDramEfficiency) > 1) at["rates"][kDramEfficiency].fail("a number up to 1");
+// The rates lie in their ranges, and what depends on another number fits to it.
+void expect_consistent(const JsonCursor& at, const Hardware& hardware) {
+  if (const auto conflict = find_conflict(hardware)) at["rates"][conflict->rate].fail(conflict->expected);
   for (const auto& [name, range] : hardware.ranges) {
     const double rate = hardware.rates.at(name);
     if (!(range.low <= rate && rate <= range.high))
@@ -112,7 +110,7 @@ Form<Hardware> hardware_form() {
                                      .required("material", &Hardware::material, cost_form(), "Of materials.")
                                      .required("light", &Hardware::light, cost_form(), "Of lights.");
   return ObjectForm<Hardware>()
-      .add(form::unused<Hardware>("beampipe_hardware", true, form::version(4), "The version of this format."))
+      .add(form::unused<Hardware>("beampipe_hardware", true, form::version(5), "The version of this format."))
       .required("name", &Hardware::name, form::text(), "What it is, for people.")
       .required("clock_mhz", &Hardware::clock_mhz, rate, "The clock, in MHz.")
       .required("memory_system", &Hardware::memory, memory_system_form(),
@@ -129,7 +127,7 @@ Form<Hardware> hardware_form() {
                 "Ways to do the same work, by name: which units each stage uses beside L2 and DRAM.")
       .add({"shading", "What each invocation of a fragment shader costs beside what the materials of the trace cost.",
             false, shading.schema, shading.read})
-      .check(expect_in_ranges);
+      .check(expect_consistent);
 }
 
 }  // namespace
@@ -140,6 +138,18 @@ std::vector<std::string> hardware_names() {
   return names;
 }
 
+std::optional<RateConflict> find_conflict(const Hardware& hardware) {
+  const auto rate = [&](const char* name) { return hardware.rates.at(name); };
+  if (rate(kDramEfficiency) > 1) return RateConflict{kDramEfficiency, "a number up to 1"};
+  if (rate("core_threads") < 1) return RateConflict{"core_threads", "at least 1"};
+  if (rate("dram_clocks") < rate("l2_clocks"))
+    return RateConflict{"dram_clocks", "at least the l2_clocks of " + Json(rate("l2_clocks")).dump()};
+  const double registers = std::max(hardware.material.registers, hardware.light.registers);
+  if (rate("core_registers") < registers)
+    return RateConflict{"core_registers", "at least the " + Json(registers).dump() + " of an invocation"};
+  return std::nullopt;
+}
+
 const std::vector<form::Key>& hardware_rates() {
   static const std::vector<form::Key> all = {
       {"triangles_per_clk", "Triangles that are set up; and, in their bins, rasterized."},
@@ -147,23 +157,28 @@ const std::vector<form::Key>& hardware_rates() {
       {"conservative_pixels_per_clk", "Pixels that the conservative raster touches."},
       {"quads_per_clk", "2x2 quads of pixels that shading is started for."},
       {"export_bytes_per_clk", "Bytes of shaded colours that the cores hand on and the ROPs take."},
-      {"issue_per_clk", "Operations that the shader cores issue, of any kind."},
-      {"mul_add_per_clk", "Multiplications and additions of floats."},
-      {"add_per_clk", "Additions and comparisons."},
-      {"bit_per_clk", "Operations on 32-bit integers and bits."},
-      {"wide_per_clk", "Operations on 64-bit integers."},
-      {"fetch_per_clk", "Loads and stores of the shader cores."},
-      {"special_per_clk", "Reciprocals, square roots and the like."},
-      {"convert_per_clk", "Conversions between types."},
-      {"texture_bytes_per_clk", "Bytes of texels that filters read."},
-      {"registers_at_full_rate", "Registers that an invocation may take at full rate."},
+      {"core_issue_per_clk", "Operations that a core issues, of any kind."},
+      {"core_mul_add_per_clk", "Multiplications and additions of floats in a core."},
+      {"core_add_per_clk", "Additions and comparisons in a core."},
+      {"core_bit_per_clk", "Operations on 32-bit integers and bits in a core."},
+      {"core_wide_per_clk", "Operations on 64-bit integers in a core."},
+      {"core_fetch_per_clk", "Loads and stores of a core."},
+      {"core_special_per_clk", "Reciprocals, square roots and the like in a core."},
+      {"core_convert_per_clk", "Conversions between types in a core."},
+      {"core_texture_bytes_per_clk", "Bytes of texels that the filters of a core read."},
+      {"core_on_chip_bytes_per_clk", "Bytes of a core's memory on chip that are read and written."},
+      {"core_threads", "Threads that a core keeps in flight, at least 1."},
+      {"core_registers", "Registers of a core, which its threads share."},
+      {"operation_clocks", "Clocks from an operation to the next one of its thread."},
+      {"fetch_clocks", "Clocks that a thread waits for a load that L1 holds."},
+      {"l2_clocks", "Clocks that four threads wait for a sector that L2 holds."},
+      {"dram_clocks", "Clocks that they wait for one from DRAM, at least l2_clocks."},
       {"mask_positions_per_clk", "Positions times edges that the mask generator tests."},
       {"sort_operations_per_clk", "Comparisons of the sorter."},
       {"compose_positions_per_clk", "Positions at which the composer compares depths."},
       {"rop_samples_per_clk", "Depth samples that the ROPs test."},
       {"rop_fragments_per_clk", "Fragments that the ROPs blend."},
       {"rop_bytes_per_clk", "Bytes of pixels in memory that the ROPs read and write."},
-      {"on_chip_bytes_per_clk", "Bytes of pixels on chip that are read and written."},
       {"l2_bytes_per_clk", "Bytes that L2 moves."},
       {"dram_bytes_per_clk", "Bytes that DRAM moves at its peak."},
       {kDramEfficiency, "The part of the peak that requests reach, up to 1."},
@@ -215,7 +230,7 @@ Hardware read_hardware(const std::string& name_or_file) {
   return hardware;
 }
 
-Json hardware_schema() { return schema_file(hardware_form().schema, "beampipe hardware, version 4"); }
+Json hardware_schema() { return schema_file(hardware_form().schema, "beampipe hardware, version 5"); }
 
 Hardware parse_hardware(const Json& json, const std::string& file) {
   Hardware hardware = hardware_form()(JsonCursor(json, file));

@@ -2,11 +2,13 @@
 //
 // A description is a JSON file. It holds the memory system, with which bytes are counted, the rates of the units per
 // clock and what their work takes in picojoules, each with its source or marked as a choice, and implementations, which
-// say on which units each stage runs; every stage uses L2 and DRAM too. Those in tools/evaluate/hardware/ are built in.
+// say on which units each stage runs; every stage uses L2 and DRAM too. Rates whose names start with core_ are those of
+// one core, and all others those of the GPU. The descriptions in tools/evaluate/hardware/ are built in.
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +17,6 @@
 #include "traces/files/json_form.h"
 
 namespace beampipe {
-
-// Among the units of a stage it marks that the stage works on the pixels of a bin, which may be on chip.
-inline constexpr const char* kOnChipMark = "on_chip";
 
 struct Implementation {
   std::string name;
@@ -31,7 +30,7 @@ inline constexpr double kLeastRate = 1e-6, kMostRate = 1e12;       // so that no
 struct ShadingCost {
   double operations = 0;
   double fetches = 0;    // bilinear probes of a texture
-  double registers = 0;  // that an invocation takes; the fewer invocations fit, the slower they are
+  double registers = 0;  // that an invocation takes; the fewer fit, the less latency they hide
 };
 
 // Where a rate or an energy lies, as far as its source tells.
@@ -62,6 +61,13 @@ Hardware titan_v();
 // The rates, in the order of the file.
 const std::vector<form::Key>& hardware_rates();
 
+// A rate that is out of range, or does not fit to another one.
+struct RateConflict {
+  const char* rate;
+  std::string expected;
+};
+std::optional<RateConflict> find_conflict(const Hardware& hardware);
+
 // The energies, in the order of the file.
 const std::vector<form::Key>& hardware_energies();
 
@@ -79,7 +85,8 @@ std::string label_of(const std::string& named);
 // The same hardware with these costs, in its `json` too.
 Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light);
 
-// The units that a description may name, with "l2" and "dram", which every stage uses.
+// The units that a description may name, with "l2" and "dram", which every stage uses, and "latency", which follows
+// from "shader" and "shading".
 std::vector<std::string> unit_names();
 
 }  // namespace beampipe

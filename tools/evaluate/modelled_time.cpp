@@ -1,6 +1,7 @@
 #include "tools/evaluate/modelled_time.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <queue>
@@ -10,11 +11,25 @@
 namespace beampipe {
 namespace {
 
-using Rates = std::map<std::string, double>;
-constexpr const char *kL2 = "l2", *kDram = "dram", *kExport = "export";
+constexpr const char *kL2 = "l2", *kDram = "dram", *kExport = "export", *kLatency = "latency";
+
+// The rates of all cores together, and of the other units.
+class Rates {
+ public:
+  explicit Rates(const Hardware& hardware) : rates_(hardware.rates), cores_(hardware.memory.cores) {}
+
+  double at(const char* rate) const { return rates_.at(rate); }
+  double of_cores(const char* rate) const { return cores_ * rates_.at(rate); }
+
+ private:
+  const std::map<std::string, double>& rates_;
+  double cores_;
+};
 
 struct StageWork : StageCounters {
   bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
+  double threads = 1;           // in flight, of all cores
+  double sector_bytes = kLeastSectorBytes;
 };
 
 // The clocks that a unit needs for the work of a stage.
@@ -31,18 +46,32 @@ double shader_clocks(const Rates& rates, const StageWork& s) {
   const double wide = static_cast<double>(ops.wide), total = static_cast<double>(ops.total());
   const double mul_add = static_cast<double>(ops.mul_add), add = static_cast<double>(ops.add);
   const double narrow = mul_add + add > 0 ? std::max(1 - wide / (mul_add + add), 0.0) : 0;
-  return std::max({over(total + wide, rates.at("issue_per_clk")),
-                   narrow * (over(mul_add, rates.at("mul_add_per_clk")) + over(add, rates.at("add_per_clk"))),
-                   over(ops.bit, rates.at("bit_per_clk")) + over(wide, rates.at("wide_per_clk")),
-                   over(ops.fetch, rates.at("fetch_per_clk")), over(ops.special, rates.at("special_per_clk")),
-                   over(ops.convert, rates.at("convert_per_clk")),
-                   over(s.logical_bytes() - s.texture_bytes, rates.at("on_chip_bytes_per_clk"))});
+  return std::max(
+      {over(total + wide, rates.of_cores("core_issue_per_clk")),
+       narrow * (over(mul_add, rates.of_cores("core_mul_add_per_clk")) + over(add, rates.of_cores("core_add_per_clk"))),
+       over(ops.bit, rates.of_cores("core_bit_per_clk")) + over(wide, rates.of_cores("core_wide_per_clk")),
+       over(ops.fetch, rates.of_cores("core_fetch_per_clk")), over(ops.special, rates.of_cores("core_special_per_clk")),
+       over(ops.convert, rates.of_cores("core_convert_per_clk")),
+       over(s.logical_bytes() - s.texture_bytes, rates.of_cores("core_on_chip_bytes_per_clk"))});
+}
+
+// How long the threads in flight wait for each other's operations, loads and sectors. A thread waits for each of its
+// operations and loads, and four threads together for a sector.
+double latency_clocks(const Rates& rates, const StageWork& s) {
+  const auto operations = static_cast<double>(s.ops.total() + s.ops.wide - s.ops.fetch);
+  const double loads = static_cast<double>(s.ops.fetch) + static_cast<double>(s.texture_bytes) / kProbeBytes;
+  const double from_dram = std::min(static_cast<double>(s.dram_bytes), static_cast<double>(s.l2_bytes));
+  const double from_l2 = static_cast<double>(s.l2_bytes) - from_dram;
+  return (operations * rates.at("operation_clocks") + loads * rates.at("fetch_clocks") +
+          4 / s.sector_bytes * (from_l2 * rates.at("l2_clocks") + from_dram * rates.at("dram_clocks"))) /
+         s.threads;
 }
 
 // What is read and written where pixels are, by bytes of the formats: through the ROP's caches, or in the memory of the
 // cores.
 double pixel_clocks(const Rates& rates, const StageWork& s) {
-  return over(s.logical_bytes(), rates.at(s.pixels_on_chip ? "on_chip_bytes_per_clk" : "rop_bytes_per_clk"));
+  return over(s.logical_bytes(),
+              s.pixels_on_chip ? rates.of_cores("core_on_chip_bytes_per_clk") : rates.at("rop_bytes_per_clk"));
 }
 
 const std::map<std::string, Clocks>& units() {
@@ -63,10 +92,13 @@ const std::map<std::string, Clocks>& units() {
        [](const Rates& rates, const StageWork& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
       {kExport,
        [](const Rates& rates, const StageWork& s) { return over(s.bytes_written, rates.at("export_bytes_per_clk")); }},
+      {kLatency, latency_clocks},
       {"shader", shader_clocks},
       {"shading", shader_clocks},
       {"texture",
-       [](const Rates& rates, const StageWork& s) { return over(s.texture_bytes, rates.at("texture_bytes_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) {
+         return over(s.texture_bytes, rates.of_cores("core_texture_bytes_per_clk"));
+       }},
       {"mask_generator",
        [](const Rates& rates, const StageWork& s) {
          return std::max(over(s.items_in, rates.at("conservative_pixels_per_clk")),
@@ -118,36 +150,47 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
   return priced;
 }
 
-// What a stage needs to know of the frame's other stages.
+bool has_stage(const std::vector<StageCounters>& stages, StageId id) {
+  return std::any_of(stages.begin(), stages.end(), [id](const auto& s) { return s.stage.id == id; });
+}
+
+// What a stage needs to know of its frame.
 struct FrameKind {
+  double bin_bytes = 0, bin_pixels = 0;
   bool has_light = false;
   bool has_rops = true;  // the colours that are shaded go to ROPs
 };
 
+bool is_of_bins(const Stage& stage) { return stage.id != StageId::vertex_setup; }
+
+// Those of bins are at most the pixels of the bins that cores hold.
+double threads_in_flight(const Hardware& hardware, const Stage& stage, const FrameKind& frame, double registers) {
+  double of_core = hardware.rates.at("core_threads");
+  if (registers > 0) of_core = std::min(of_core, std::floor(hardware.rates.at("core_registers") / registers));
+  if (is_of_bins(stage) && frame.bin_pixels > 0)
+    of_core = std::min(of_core, frame.bin_pixels * bins_held(hardware.memory, frame.bin_bytes));
+  return hardware.memory.cores * std::max(of_core, 1.0);
+}
+
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
-                                       const StageCounters& unpriced, const FrameKind& frame, double bin_bytes) {
+                                       const StageCounters& unpriced, const FrameKind& frame) {
   double registers = 0;
-  const StageWork stage{with_costs(hardware, unpriced, frame.has_light, registers), bin_bytes > 0};
-  const Rates& rates = hardware.rates;
+  StageWork stage{with_costs(hardware, unpriced, frame.has_light, registers), frame.bin_bytes > 0};
+  stage.threads = threads_in_flight(hardware, stage.stage, frame, registers);
+  stage.sector_bytes = hardware.memory.sector_bytes;
+  const Rates rates(hardware);
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
   std::map<std::string, double> times;
   const auto use = [&](const std::string& unit) { times[unit] = units().at(unit)(rates, stage) / clocks_per_ms; };
-  bool on_chip = false;
   if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
-    for (const std::string& unit : found->second) unit == kOnChipMark ? static_cast<void>(on_chip = true) : use(unit);
+    for (const std::string& unit : found->second) use(unit);
   if (!frame.has_rops) times.erase(kExport);
-  if (const auto shading = times.find("shading"); shading != times.end())
-    shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
-  if (on_chip && bin_bytes > 0)
-    for (auto& [unit, ms] : times)
-      ms *= static_cast<double>(hardware.memory.bins_per_core) / bins_held(hardware.memory, bin_bytes);
+  if (const auto shading = times.extract("shading"))  // the same lanes
+    times["shader"] = std::max(times["shader"], shading.mapped());
+  if (times.contains("shader")) use(kLatency);
   use(kL2);
   use(kDram);
   return times;
-}
-
-bool has_stage(const std::vector<StageCounters>& stages, StageId id) {
-  return std::any_of(stages.begin(), stages.end(), [id](const auto& s) { return s.stage.id == id; });
 }
 
 // Does the implementation do any of these stages in ROPs?
@@ -172,18 +215,43 @@ std::pair<std::string, double> busiest_of(const std::map<std::string, double>& t
   return most;
 }
 
-// Units of which each core has its part. The others serve all bins.
-bool is_of_cores(const std::string& unit) {
-  for (const char* const each : {"shader", "texture", "quads", "mask_generator", "sorter", "composer"})
-    if (unit == each) return true;
-  return false;
-}
+// Units of which each core has its own.
+bool is_of_cores(const std::string& unit) { return unit == "shader" || unit == "texture" || unit == kLatency; }
 
-double on_cores_ms(const std::map<std::string, double>& of_bins, const std::map<std::string, double>& before,
-                   double times_longer) {
-  double longest = 0;
-  for (const auto& [unit, ms] : of_bins) longest = std::max(longest, is_of_cores(unit) ? ms * times_longer : ms);
-  return busiest_of(before).second + longest;
+// Times of bins on cores: the sums over stages of what units of cores and shared ones do, and of what a core needs for
+// its part of the bins, if all that it holds do their stages one after the other.
+struct BinTimes {
+  std::map<std::string, double> of_cores, shared;
+  double stages_in_turn_ms = 0;
+
+  void add(const std::map<std::string, double>& stage, double bins_held, double cores) {
+    double alone = 0;  // all bins one by one on each core: latency is that of one bin's threads, shared units are free
+    for (const auto& [unit, ms] : stage) {
+      (is_of_cores(unit) ? of_cores : shared)[unit] += ms;
+      alone = std::max(alone, unit == kLatency ? ms * bins_held : is_of_cores(unit) ? ms : ms / cores);
+    }
+    stages_in_turn_ms += alone / bins_held;
+  }
+
+  double ms(double busiest_core) const {
+    const double core = std::max(busiest_of(of_cores).second, stages_in_turn_ms);
+    return std::max(busiest_of(shared).second, core * busiest_core);
+  }
+};
+
+// How much longer the busiest of `cores` works than they do on average. 1 if there is no work.
+double of_busiest_core(const std::vector<double>& bins, std::uint32_t cores) {
+  std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
+  for (std::uint32_t i = 0; i < cores; ++i) free_at.push(0);
+  double last = 0;
+  for (const double work : bins) {
+    const double end = free_at.top() + work;
+    free_at.pop();
+    free_at.push(end);
+    last = std::max(last, end);
+  }
+  const double all = std::accumulate(bins.begin(), bins.end(), 0.0);
+  return all == 0 ? 1 : last * cores / all;
 }
 
 }  // namespace
@@ -195,8 +263,8 @@ std::vector<std::string> unit_names() {
 }
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, double bin_bytes) {
-  return times_of(hardware, implementation, stage, {}, bin_bytes);
+                                         const StageCounters& stage, double bin_bytes, double bin_pixels) {
+  return times_of(hardware, implementation, stage, {bin_bytes, bin_pixels});
 }
 
 std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes) {
@@ -204,18 +272,19 @@ std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes) {
   return static_cast<std::uint32_t>(std::min(room, static_cast<double>(memory.bins_per_core)));
 }
 
-double imbalance(std::span<const std::uint64_t> bin_operations, std::uint32_t cores) {
-  std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> free_at;
-  for (std::uint32_t i = 0; i < cores; ++i) free_at.push(0);
-  std::uint64_t last = 0;
-  for (const std::uint64_t operations : bin_operations) {
-    const std::uint64_t end = free_at.top() + operations;
-    free_at.pop();
-    free_at.push(end);
-    last = std::max(last, end);
-  }
-  const auto all = std::accumulate(bin_operations.begin(), bin_operations.end(), std::uint64_t{0});
-  return all == 0 ? 1 : static_cast<double>(last) * cores / static_cast<double>(all);
+BinSpread bin_spread(const Hardware& hardware, const FrameWork& work) {
+  const double of_invocation = hardware.material.operations + hardware.light.operations;
+  std::vector<double> bins(work.bin_operations.begin(), work.bin_operations.end());
+  for (std::size_t i = 0; i < std::min(bins.size(), work.bin_invocations.size()); ++i)
+    bins[i] += static_cast<double>(work.bin_invocations[i]) * of_invocation;
+  BinSpread spread{.busiest_core = of_busiest_core(bins, hardware.memory.cores)};
+  const auto count = static_cast<double>(bins.size());
+  const double mean = std::accumulate(bins.begin(), bins.end(), 0.0) / count;
+  if (!(mean > 0)) return spread;
+  std::sort(bins.begin(), bins.end());
+  spread.p99 = bins[(99 * bins.size() + 99) / 100 - 1] / mean;
+  spread.most = bins.back() / mean;
+  return spread;
 }
 
 std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vector<StageCounters>& stages) {
@@ -227,21 +296,26 @@ std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vec
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work) {
-  const FrameKind frame{has_stage(work.stages, StageId::light), has_rops(implementation, work.stages)};
+  const FrameKind frame{work.bin_bytes, work.bin_pixels, has_stage(work.stages, StageId::light),
+                        has_rops(implementation, work.stages)};
+  const double held = bins_held(hardware.memory, work.bin_bytes);
   ModelledTime time;
-  std::map<std::string, double> before, of_bins;
+  std::map<std::string, double> all, before;
+  BinTimes of_bins;
   for (const StageCounters& stage : work.stages) {
-    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, frame, work.bin_bytes);
-    if (const auto shading = of_stage.extract("shading"))  // the same lanes
-      of_stage["shader"] = std::max(of_stage["shader"], shading.mapped());
-    add_times(stage.stage.id == StageId::vertex_setup ? before : of_bins, of_stage);
+    const std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, frame);
+    add_times(all, of_stage);
+    if (is_of_bins(stage.stage)) {
+      of_bins.add(of_stage, held, hardware.memory.cores);
+    } else {
+      add_times(before, of_stage);
+    }
     const auto [unit, ms] = busiest_of(of_stage);
     time.stages.push_back({stage.stage, ms, unit});
     time.in_turn_ms += ms;
   }
-  time.on_cores_ms = on_cores_ms(of_bins, before, imbalance(work.bin_operations, hardware.memory.cores));
-  add_times(of_bins, before);
-  std::tie(time.busiest, time.at_once_ms) = busiest_of(of_bins);
+  time.on_cores_ms = busiest_of(before).second + of_bins.ms(bin_spread(hardware, work).busiest_core);
+  std::tie(time.busiest, time.at_once_ms) = busiest_of(all);
   return time;
 }
 

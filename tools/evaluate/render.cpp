@@ -145,6 +145,7 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   report.pixels = std::uint64_t{result.image.width} * result.image.height;
   report.bin_pixels = result.bin_pixels;
   report.bin_operations = result.bin_operations;
+  report.bin_invocations = result.bin_invocations;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = on_threads(plan.options.threads, [&] {

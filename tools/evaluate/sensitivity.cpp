@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace beampipe {
 
@@ -13,8 +12,7 @@ std::vector<Hardware> drawn_hardware(const Hardware& hardware, int count) {
   std::vector<Hardware> draws(static_cast<std::size_t>(count), plain);
   for (Hardware& draw : draws)
     for (const auto& [rate, range] : hardware.ranges) {
-      const double part = static_cast<double>(random() >> 11) * 0x1p-53;
-      draw.rates.at(rate) = range.low * std::pow(range.high / range.low, part);
+      draw.rates.at(rate) = range.low * std::pow(range.high / range.low, uniform(random));
     }
   return draws;
 }

@@ -93,14 +93,12 @@ std::string ends_text(const Interval& interval) {
 }
 
 std::string quotient_text(const Interval& interval) {
-  return ends_text(interval) + (interval.low <= 1 && interval.high >= 1 ? ", even" : "");
+  return ends_text(interval) + (interval.contains(1) ? ", even" : "");
 }
 
-Json ends_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
-
 Json energy_json(const Energy& energy) {
-  Json json = {{"total", ends_json(energy.total())}};
-  for (const EnergyTerm& term : energy_terms()) json[term.name] = ends_json(energy.*term.part);
+  Json json = {{"total", energy.total().json()}};
+  for (const EnergyTerm& term : energy_terms()) json[term.name] = (energy.*term.part).json();
   return json;
 }
 
@@ -136,10 +134,10 @@ Json energy_json(const Report& report, const std::string& over) {
                     {"implementation", row.implementation.name},
                     {"energy_mj", energy_json(row.mean)},
                     {"stages", stages},
-                    {"watts", ends_json(row.watts())},
+                    {"watts", row.watts().json()},
                     {"on_chip_bytes", row.on_chip_bytes},
                     {"compared_per_clk", rates}});
-    if (row.quotient) json.elements().back()["ratio_interval"] = ends_json(*row.quotient);
+    if (row.quotient) json.elements().back()["ratio_interval"] = row.quotient->json();
   }
   return json;
 }

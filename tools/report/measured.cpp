@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "tools/evaluate/mean_times.h"
+#include "tools/evaluate/mean_time.h"
 #include "tools/files/csv.h"
 #include "tools/files/format.h"
 #include "tools/report/colors.h"
@@ -22,12 +22,6 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kHeader = {"name",           "folder",   "technique", "implementation", "over_folder",
                                           "over_technique", "measured", "fitted",    "source"};
 constexpr double kLeast = 1e-9, kMost = 1e9;  // measured; so that no quotient becomes infinite
-
-// The times of a technique, as described and with each draw of the rates.
-struct Times {
-  MeanTimes described;
-  std::vector<MeanTimes> drawn;
-};
 
 class Reader {
  public:
@@ -62,11 +56,11 @@ class Reader {
     if (field("folder").empty()) fail("folder", "a folder that run wrote", "");
     const std::string& over = field("over_folder");
     if (field("over_technique").empty() && !over.empty()) fail("over_technique", "a technique beside over_folder", "");
-    const Times times = times_of(field("folder"), "technique");
-    std::optional<Times> by;
+    const DrawnTime times = times_of(field("folder"), "technique");
+    std::optional<DrawnTime> by;
     if (!field("over_technique").empty()) by = times_of(over.empty() ? field("folder") : over, "over_technique");
-    row.in_turn = number(times, by, &MeanTimes::in_turn_ms);
-    row.at_once = number(times, by, &MeanTimes::at_once_ms);
+    row.in_turn = number(times, by, &ModelledTime::in_turn_ms);
+    row.at_once = number(times, by, &ModelledTime::at_once_ms);
     return row;
   }
 
@@ -80,7 +74,7 @@ class Reader {
   }
 
   // `key`: of the field that has the technique.
-  Times times_of(const std::string& folder, const std::string& key) {
+  DrawnTime times_of(const std::string& folder, const std::string& key) {
     const fs::path path = file_.parent_path() / folder;
     if (!reports_.contains(path)) reports_.emplace(path, finished_run(path));
     const Report& report = reports_.at(path);
@@ -93,22 +87,15 @@ class Reader {
                                   [&](const Implementation& each) { return each.name == field("implementation"); });
     if (way == all.end()) fail("implementation", "one of the hardware of " + path.string(), field("implementation"));
     const auto number = static_cast<std::size_t>(way - all.begin());
-    Times times{mean_times(report.hardware, number, *result), {}};
-    for (const Hardware& hardware : drawn_hardware(report.hardware))
-      times.drawn.push_back(mean_times(hardware, number, *result));
-    return times;
+    return drawn_time(report.hardware, drawn_hardware(report.hardware), number, *result);
   }
 
-  ModelledNumber number(const Times& times, const std::optional<Times>& over, double MeanTimes::*ms) const {
-    const auto value = [&](const MeanTimes& time, const MeanTimes* by) {
-      const double number = by ? time.*ms / by->*ms : time.*ms;
-      if (!(number > 0 && std::isfinite(number))) fail("technique", "a modelled time above 0", format("%g", number));
-      return number;
-    };
-    std::vector<double> drawn;
-    for (std::size_t i = 0; i < times.drawn.size(); ++i)
-      drawn.push_back(value(times.drawn[i], over ? &over->drawn[i] : nullptr));
-    return {value(times.described, over ? &over->described : nullptr), middle_of(drawn)};
+  ModelledNumber number(const DrawnTime& times, const std::optional<DrawnTime>& over, double ModelledTime::*ms) const {
+    const double value = over ? times.described.*ms / over->described.*ms : times.described.*ms;
+    const Interval interval = over ? times.interval_over(*over, ms) : times.interval(ms);
+    for (const double each : {value, interval.low, interval.high})
+      if (!(each > 0 && std::isfinite(each))) fail("technique", "a modelled time above 0", format("%g", each));
+    return {value, interval};
   }
 
   fs::path file_;

@@ -53,10 +53,11 @@ std::optional<Roof> roof_of(const ReportFile& report) {
   if (!report.json.contains("hardware") || report.techniques.front().modelled_ms.empty()) return std::nullopt;
   const Json& hardware = report.json.at("hardware");
   const Json& rates = hardware.at("rates");
+  const double cores = report.json.at("memory_system").at("cores").get<double>();
   const double gigahertz = hardware.at("clock_mhz").get<double>() / 1000;
   const Json::Object& implementations = hardware.at("implementations").members();
   if (implementations.empty()) throw JsonError("expected hardware with an implementation, found none");
-  return Roof{implementations.front().key, gigahertz * rates.at("issue_per_clk").get<double>(),
+  return Roof{implementations.front().key, gigahertz * cores * rates.at("core_issue_per_clk").get<double>(),
               gigahertz * rates.at("dram_bytes_per_clk").get<double>() * rates.value(kDramEfficiency, 1.0)};
 }
 

@@ -110,11 +110,13 @@ const std::vector<Source> kTechniqueColumns = {
      "/bin_bytes"},
     {{"bins_held", "bins held", "bins", "How many bins a core has room for, at most as many as it works on.", kMemory},
      "/bins_held"},
-    {{"imbalance", "uneven", "ratio",
-      "How much longer the busiest core works than the mean, if bins start in their order on the core that is free "
-      "first.",
-      kTime},
-     "/imbalance"},
+    {{"busiest_core", "busiest core", "ratio",
+      "Work of the busiest core over the mean, if bins start in their order on the core that is free first.", kTime},
+     "/bin_spread/busiest_core"},
+    {{"bin_p99", "99 % of bins", "ratio", "Work of the bin that 99 % do not exceed, over the mean of bins.", kTime},
+     "/bin_spread/p99"},
+    {{"bin_most", "fullest bin", "ratio", "Work of the fullest bin, over the mean of bins.", kTime},
+     "/bin_spread/most"},
     {{"hardware", "hardware", "", "The GPU whose times are modelled.", kTime}, "/hardware"},
     {{"wall_ms", "wall time", "ms per frame",
       "The time of the simulator on the machine that ran it, which says nothing about hardware: the median over the "
@@ -319,7 +321,7 @@ std::optional<double> mean_of_frames(const Json& result, std::string_view key) {
 }
 
 // Of the first frame: what the pixels of a bin take on chip, and how many bins have room. Means over the frames: how
-// uneven bins are, and DRAM bytes of geometry.
+// unevenly bins fill cores, and DRAM bytes of geometry.
 void add_room(const ReportFile& report, const Json& result, Json& record) {
   const Json* const memory = report.json.find("memory_system");
   if (!memory || !memory->at("modelled").get<bool>() || result.at("technique") == kReferenceSpec) return;
@@ -327,14 +329,13 @@ void add_room(const ReportFile& report, const Json& result, Json& record) {
   parameters.on_chip_bytes = memory->at("on_chip_bytes").get<std::uint32_t>();
   parameters.bins_per_core = memory->at("bins_per_core").get<std::uint32_t>();
   const std::vector<Json>& frames = result.at("frames").elements();
-  double uneven = 0;
-  for (const Json& frame : frames) {
-    std::vector<std::uint64_t> operations;
-    const Json of_bins = frame.value("bin_operations", Json::array());
-    for (const Json& of_bin : of_bins.elements()) operations.push_back(of_bin.get<std::uint64_t>());
-    uneven += imbalance(operations, memory->at("cores").get<std::uint32_t>());
+  Json spread;
+  for (const Json& frame : frames)
+    if (const Json* const of_frame = frame.find("bin_spread")) add_numbers(spread, *of_frame);
+  if (!spread.is_null()) {
+    divide_numbers(spread, frames.size());
+    record["bin_spread"] = spread;
   }
-  record["imbalance"] = uneven / static_cast<double>(frames.size());
   for (const Json& buffer : frames.front().at("buffers").elements()) {
     if (buffer.at("name") != kOpenPixels) continue;
     const double bytes = buffer.at("peak_bytes").get<double>();

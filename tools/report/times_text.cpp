@@ -6,8 +6,7 @@
 #include <stdexcept>
 
 #include "tools/evaluate/known_specs.h"
-#include "tools/evaluate/mean_times.h"
-#include "tools/evaluate/modelled_time.h"
+#include "tools/evaluate/mean_time.h"
 #include "tools/evaluate/sensitivity.h"
 #include "tools/files/format.h"
 #include "tools/report/report_text.h"
@@ -25,17 +24,6 @@ std::string interval_text(const Interval& interval, std::string (*text)(double))
 }
 
 std::string ratio_text(double ratio) { return format("%.2f", ratio); }
-
-double mean_in_turn_ms(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result) {
-  return mean_times(hardware, implementation, result).in_turn_ms;
-}
-
-std::vector<double> mean_in_turn_all_ms(const std::vector<Hardware>& all, std::size_t implementation,
-                                        const TechniqueReport& result) {
-  std::vector<double> sums;
-  for (const Hardware& hardware : all) sums.push_back(mean_in_turn_ms(hardware, implementation, result));
-  return sums;
-}
 
 // A rate at the ends of its range.
 struct RateEffect {
@@ -55,25 +43,21 @@ struct Quotient {
 struct Row {
   const TechniqueReport& result;
   const Implementation& implementation;
-  ModelledTime mean = {};  // of the frames; its unit is that of the first
-  double times_longer = 0;
-  Interval interval = {};
+  ModelledTime time = {};
+  BinSpread spread = {};                           // the means over the frames
+  std::map<const char*, Interval> intervals = {};  // by the key of the time
   std::optional<Quotient> quotient = {};
 };
 
-// With the value in it, which may be at the end of what its rates allow.
-Interval around(double value, const Interval& interval) {
-  return {std::min(value, interval.low), std::max(value, interval.high)};
-}
-
-// The part of one of several frames. Stages for alpha are not in all of them.
-void add_stages(const std::vector<StageTime>& stages, double frames, std::vector<StageTime>& mean) {
-  for (const StageTime& stage : stages) {
-    const auto is_it = [&](const StageTime& each) { return each.stage == stage.stage; };
-    const auto found = std::find_if(mean.begin(), mean.end(), is_it);
-    StageTime& of_mean = found == mean.end() ? mean.emplace_back(StageTime{stage.stage, 0, stage.busiest}) : *found;
-    of_mean.ms += stage.ms / frames;
+BinSpread mean_spread(const Hardware& hardware, const TechniqueReport& result) {
+  BinSpread mean{0, 0, 0};
+  const auto frames = static_cast<double>(result.frames.size());
+  for (const FrameReport& frame : result.frames) {
+    const BinSpread spread = bin_spread(hardware, frame.work());
+    mean.busiest_core += spread.busiest_core / frames, mean.p99 += spread.p99 / frames;
+    mean.most += spread.most / frames;
   }
+  return mean;
 }
 
 class Rows {
@@ -85,6 +69,8 @@ class Rows {
     if (!options.over.empty() && (!over_ || over_->frames.empty()))
       throw std::runtime_error("--over " + options.over + ": expected a technique of the run");
     if (options.sensitivity) ends_ = ends_of_ranges(report.hardware);
+    for (std::size_t i = 0; over_ && i < report.hardware.implementations.size(); ++i)
+      of_over_.push_back(drawn_time(report.hardware, draws_, i, *over_));
   }
 
   std::vector<Row> all() const {
@@ -98,31 +84,20 @@ class Rows {
  private:
   Row row_of(const TechniqueReport& result, std::size_t i) const {
     const Hardware& hardware = report_.hardware;
-    Row row{result, hardware.implementations[i]};
-    const auto frames = static_cast<double>(result.frames.size());
-    for (const FrameReport& frame : result.frames) {
-      const ModelledTime time = modelled_time(hardware, row.implementation, frame.work());
-      if (row.mean.busiest.empty()) row.mean.busiest = time.busiest;
-      add_stages(time.stages, frames, row.mean.stages);
-      row.mean.in_turn_ms += time.in_turn_ms / frames;
-      row.mean.on_cores_ms += time.on_cores_ms / frames;
-      row.mean.at_once_ms += time.at_once_ms / frames;
-      row.times_longer += imbalance(frame.bin_operations, hardware.memory.cores) / frames;
-    }
-    const std::vector<double> drawn = mean_in_turn_all_ms(draws_, i, result);
-    row.interval = around(row.mean.in_turn_ms, middle_of(drawn));
-    if (over_ && over_ != &result) row.quotient = quotient_of(result, i, drawn, row.mean.in_turn_ms);
+    const DrawnTime times = drawn_time(hardware, draws_, i, result);
+    Row row{result, hardware.implementations[i], times.described, mean_spread(hardware, result)};
+    for (const TimeKind& kind : kTimes) row.intervals[kind.key] = times.interval(kind.ms);
+    if (over_ && over_ != &result) row.quotient = quotient_of(result, i, times);
     return row;
   }
 
-  Quotient quotient_of(const TechniqueReport& result, std::size_t i, std::vector<double> drawn, double ms) const {
-    const std::vector<double> of_over = mean_in_turn_all_ms(draws_, i, *over_);
-    for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k] /= of_over[k];
-    const double value = ms / mean_in_turn_ms(report_.hardware, i, *over_);
-    Quotient quotient{value, around(value, middle_of(drawn)), {}};
+  Quotient quotient_of(const TechniqueReport& result, std::size_t i, const DrawnTime& times) const {
+    constexpr auto kMs = &ModelledTime::in_turn_ms;
+    const DrawnTime& over = of_over_[i];
+    Quotient quotient{times.described.*kMs / over.described.*kMs, times.interval_over(over, kMs), {}};
     for (const RateEnds& ends : ends_) {
       const auto at = [&](const Hardware& end) {
-        return mean_in_turn_ms(end, i, result) / mean_in_turn_ms(end, i, *over_);
+        return mean_time(end, i, result).*kMs / mean_time(end, i, *over_).*kMs;
       };
       quotient.effects.push_back({ends.rate, at(ends.low), at(ends.high)});
     }
@@ -136,18 +111,26 @@ class Rows {
   std::vector<Hardware> draws_;
   std::vector<RateEnds> ends_;
   const TechniqueReport* over_ = nullptr;
+  std::vector<DrawnTime> of_over_;  // by implementation
 };
+
+// If a technique that has its pixels on chip finds no room there.
+std::string no_room_text(const MemoryParameters& memory, const TechniqueReport& result) {
+  const Framebuffer framebuffer = parse_technique(result.technique).framebuffer;
+  if (!framebuffer.finds_no_room(memory)) return "";
+  const auto side = static_cast<double>(framebuffer.bin_size_on(memory));
+  return format(": %.1f KiB do not fit", side * side * framebuffer.on_chip_bytes_per_pixel() / 1024);
+}
 
 std::string room_text(const Report& report, const TechniqueReport& result) {
   const double bytes = result.frames.front().open_pixel_bytes();
-  if (!result.pixels_on_chip || bytes == 0) return "in memory";
+  if (bytes == 0) return "in memory" + no_room_text(report.memory, result);
   return format("%.1f KiB, %u of %u bins", bytes / 1024, bins_held(report.memory, bytes), report.memory.bins_per_core);
 }
 
 std::string quotient_text(const Quotient& quotient) {
-  const bool is_even = quotient.interval.low <= 1 && quotient.interval.high >= 1;
   return ratio_text(quotient.value) + " (" + interval_text(quotient.interval, ratio_text) + ")" +
-         (is_even ? ", even" : "");
+         (quotient.interval.contains(1) ? ", even" : "");
 }
 
 std::string sensitivity_text(const std::vector<Row>& all, const std::string& over) {
@@ -163,8 +146,6 @@ std::string sensitivity_text(const std::vector<Row>& all, const std::string& ove
   return text;
 }
 
-Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
-
 }  // namespace
 
 std::string times_text(const Report& report, const TimesOptions& options) {
@@ -173,9 +154,10 @@ std::string times_text(const Report& report, const TimesOptions& options) {
       {"technique", "implementation", "in turn", "nine in ten", "on cores", "at once", "busiest", "uneven", "on chip"}};
   if (!options.over.empty()) rows.front().push_back("in turn over " + options.over);
   for (const Row& row : all) {
-    rows.push_back({row.result.technique, row.implementation.name, ms_text(row.mean.in_turn_ms),
-                    interval_text(row.interval, ms_text), ms_text(row.mean.on_cores_ms), ms_text(row.mean.at_once_ms),
-                    row.mean.busiest, ratio_text(row.times_longer), room_text(report, row.result)});
+    rows.push_back({row.result.technique, row.implementation.name, ms_text(row.time.in_turn_ms),
+                    interval_text(row.intervals.at(kTimes[0].key), ms_text), ms_text(row.time.on_cores_ms),
+                    ms_text(row.time.at_once_ms), row.time.busiest, ratio_text(row.spread.busiest_core),
+                    room_text(report, row.result)});
     if (!options.over.empty()) rows.back().push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
   const std::string title = "\nmodelled ms on " + report.hardware.label + " (" + report.hardware.name + ")\n";
@@ -187,27 +169,28 @@ Json times_json(const Report& report, const TimesOptions& options) {
   Json json = Json::array();
   for (const Row& row : Rows(report, options).all()) {
     Json stages, units;
-    for (const StageTime& each : row.mean.stages) {
+    for (const StageTime& each : row.time.stages) {
       stages[name_of(each.stage)] = each.ms;
       units[name_of(each.stage)] = each.busiest;
     }
     Json of_row = {{"technique", row.result.technique},
                    {"hardware", report.hardware.label},
-                   {"implementation", row.implementation.name},
-                   {"in_turn", row.mean.in_turn_ms},
-                   {"in_turn_interval", interval_json(row.interval)},
-                   {"on_cores", row.mean.on_cores_ms},
-                   {"at_once", row.mean.at_once_ms},
-                   {"busiest", row.mean.busiest},
-                   {"imbalance", row.times_longer},
-                   {"stages", stages},
-                   {"busiest_units", units}};
+                   {"implementation", row.implementation.name}};
+    for (const TimeKind& kind : kTimes) {
+      of_row[kind.key] = row.time.*kind.ms;
+      of_row[std::string(kind.key) + "_interval"] = row.intervals.at(kind.key).json();
+    }
+    of_row["busiest"] = row.time.busiest;
+    of_row["bin_spread"] = {
+        {"busiest_core", row.spread.busiest_core}, {"p99", row.spread.p99}, {"most", row.spread.most}};
+    of_row["stages"] = stages;
+    of_row["busiest_units"] = units;
     const double bytes = row.result.frames.front().open_pixel_bytes();
     of_row["bin_bytes"] = bytes;
     if (bytes > 0) of_row["bins_held"] = bins_held(report.memory, bytes);
     if (row.quotient) {
       of_row["ratio"] = row.quotient->value;
-      of_row["ratio_interval"] = interval_json(row.quotient->interval);
+      of_row["ratio_interval"] = row.quotient->interval.json();
       for (const RateEffect& effect : row.quotient->effects)
         of_row["ratio_at_ends"][effect.rate] = Json::array({effect.low, effect.high});
     }

@@ -47,6 +47,7 @@ CountedCell render_cell(const SweepPlan& plan, const SweepCell& cell, const Load
     report.pixels = std::uint64_t{result.image.width} * result.image.height;
     report.bin_pixels = result.bin_pixels;
     report.bin_operations = std::move(result.bin_operations);
+    report.bin_invocations = std::move(result.bin_invocations);
     counts.report.frames.push_back(std::move(report));
   }
   return counts;

@@ -281,16 +281,25 @@ class PlanReader {
         for (const auto& [name, value] : values) {
           index_in(plan_.varied_rates, name);
           const double rate = rate_form()(value);
-          if (name == kDramEfficiency && rate > 1) value.fail("a number up to 1");
           (name == kClock ? part.clock_mhz : part.rates[name]) = rate;
+          part.ranges.erase(name);  // the plan says which it is
           key += "," + name + Json(rate).dump();
         }
+        if (const auto conflict = find_conflict(part)) fail_rates(values, *conflict);
         const auto [found, is_new] = hardware_numbers_.emplace(key, plan_.hardware.size());
         if (is_new) plan_.hardware.push_back(part);
         numbers.push_back(found->second);
       });
     }
     return numbers;
+  }
+
+  // At the value of the rate, or of another one that it does not fit to.
+  [[noreturn]] static void fail_rates(const std::vector<std::pair<std::string, JsonCursor>>& values,
+                                      const RateConflict& conflict) {
+    for (const auto& [name, value] : values)
+      if (name == conflict.rate) value.fail(conflict.expected);
+    values.front().second.fail("rates that fit: " + std::string(conflict.rate) + " " + conflict.expected);
   }
 
   Hardware named_hardware(const JsonCursor& at) const {

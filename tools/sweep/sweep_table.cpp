@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "tools/evaluate/energy.h"
+#include "tools/evaluate/mean_time.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/files/csv.h"
 
@@ -101,13 +102,25 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
   std::vector<SweepColumn> columns = {{"hardware", "", "the described hardware", true}};
   for (const std::string& rate : plan.varied_rates) columns.push_back({"hardware." + rate, "", "as the plan sets it"});
   columns.push_back({"implementation", "", "which units do the work of a stage", true});
-  columns.push_back({"at_once_ms", "ms", "modelled time if all units work at once; the mean over the frames"});
-  columns.push_back({"on_cores_ms", "ms", "the same, with bins one by one on cores"});
-  columns.push_back({"in_turn_ms", "ms", "the same, one stage after the other"});
+  for (const TimeKind& kind : kTimes) {
+    const std::string name = kind.key;
+    columns.push_back({name + "_ms", "ms", "modelled time " + std::string(kind.title) + "; the mean over the frames"});
+    columns.push_back({name + "_ms_low", "ms", "the least of nine in ten, by the ranges of rates"});
+    columns.push_back({name + "_ms_high", "ms", "the most of them"});
+  }
   columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
   columns.push_back({"energy_mj_low", "mJ", "modelled energy, the least; the mean over the frames"});
   columns.push_back({"energy_mj_high", "mJ", "the same, the most"});
   return columns;
+}
+
+void add_times(const Hardware& hardware, std::size_t implementation, const TechniqueReport& report,
+               std::vector<Json>& values) {
+  const DrawnTime times = drawn_time(hardware, drawn_hardware(hardware), implementation, report);
+  for (const TimeKind& kind : kTimes) {
+    const Interval interval = times.interval(kind.ms);
+    for (const double ms : {times.described.*kind.ms, interval.low, interval.high}) values.emplace_back(ms);
+  }
 }
 
 void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueReport& report,
@@ -119,19 +132,16 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   for (const std::string& rate : plan.varied_rates)
     values.emplace_back(rate == "clock_mhz" ? hardware.clock_mhz : hardware.rates.at(rate));
   values.emplace_back(implementation.name);
-  double overlap = 0, scheduled = 0, sum = 0, longest = -1;
-  std::string busiest;
   Energy energy;
+  double longest = -1;
+  std::string busiest;
   for (const FrameReport& frame : report.frames) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
-    overlap += time.at_once_ms, scheduled += time.on_cores_ms, sum += time.in_turn_ms;
     if (time.at_once_ms > longest) longest = time.at_once_ms, busiest = time.busiest;
     if (has_energy(hardware)) energy += sum_of(modelled_energy(hardware, implementation, frame.stages));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
-  values.emplace_back(overlap / frames);
-  values.emplace_back(scheduled / frames);
-  values.emplace_back(sum / frames);
+  add_times(hardware, row.implementation, report, values);
   values.emplace_back(busiest);
   for (const double mj : {energy.total().low, energy.total().high})
     values.push_back(has_energy(hardware) ? Json(mj / frames) : Json());

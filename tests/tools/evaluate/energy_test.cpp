@@ -118,9 +118,10 @@ TEST(Energy, BusyPartsStayBelowThePowerOfTheirBoards) {
     const auto watts = [&](const char* rate, const char* picojoules) {
       return hardware.rates.at(rate) * hardware.clock_mhz * 1e6 * hardware.picojoules.at(picojoules).high * 1e-12;
     };
-    const double all = watts("issue_per_clk", "instruction") + watts("mul_add_per_clk", "mul_add") +
-                       watts("on_chip_bytes_per_clk", "on_chip_byte") + watts("l2_bytes_per_clk", "l2_byte") +
-                       watts("dram_bytes_per_clk", "dram_byte");
+    const double all =
+        hardware.memory.cores * (watts("core_issue_per_clk", "instruction") + watts("core_mul_add_per_clk", "mul_add") +
+                                 watts("core_on_chip_bytes_per_clk", "on_chip_byte")) +
+        watts("l2_bytes_per_clk", "l2_byte") + watts("dram_bytes_per_clk", "dram_byte");
     EXPECT_LT(all, board) << name;
     EXPECT_GT(all, board / 8) << name;
   }

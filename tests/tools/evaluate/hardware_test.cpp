@@ -49,6 +49,15 @@ std::string refusal(const std::string& from, const std::string& to) {
   return message_of<std::runtime_error>([&] { parse_hardware(parse_json_text(text, "h.json"), "h.json"); });
 }
 
+TEST(Hardware, AnInvocationHasRoomInACore) {
+  Hardware titan = titan_v();
+  EXPECT_FALSE(find_conflict(with_shading_costs(titan, {0, 0, 65536}, {})));
+  const auto conflict = find_conflict(with_shading_costs(titan, {}, {0, 0, 65537}));
+  ASSERT_TRUE(conflict);
+  EXPECT_STREQ(conflict->rate, "core_registers");
+  EXPECT_EQ(conflict->expected, "at least the 65537.0 of an invocation");
+}
+
 TEST(Hardware, ErrorsNameTheKey) {
   const std::string number = "expected a number from 1e-06 to 1e+12, found ", units = "/implementations/shaders/units/";
   const std::tuple<const char*, const char*, std::string> cases[] = {
@@ -56,10 +65,9 @@ TEST(Hardware, ErrorsNameTheKey) {
       {"\"clock_mhz\":1455", "\"clock_mhz\":-1", "/clock_mhz: " + number + "-1"},
       {"\"dram_bytes_per_clk\":448.7", "\"dram_bytes_per_clk\":1e-300",
        "/rates/dram_bytes_per_clk: " + number + "1e-300"},
-      {"\"compose\":[\"shader\",\"on_chip\"],", "",
-       "/implementations/shaders/units: expected the key \"compose\", found none"},
+      {"\"compose\":[\"shader\"],", "", "/implementations/shaders/units: expected the key \"compose\", found none"},
       {"\"windows\":[\"shader\"],", "\"windows\":[],", units + "windows: expected at least one unit, found none"},
-      {"\"compose\":[\"shader\",\"on_chip\"],", "\"compose\":[\"on_chip\"],",
+      {"\"compose\":[\"shader\"],", "\"compose\":[\"texture\"],",
        units + "compose: expected a unit that does the work of the stage, found an array of 1"},
       {"\"bins_per_core\":2", "\"bins_per_core\":0.5",
        "/memory_system/parameters/bins_per_core: expected an integer 1..64, found 0.5"},
@@ -68,9 +76,12 @@ TEST(Hardware, ErrorsNameTheKey) {
        "/ranges/rop_samples_per_clk: expected two numbers, the lowest and the highest, found an array of 1"},
       {"\"rop_samples_per_clk\":[384,768]", "\"rop_samples_per_clk\":[513,768]",
        "/ranges/rop_samples_per_clk: expected a range around the rate of 512"},
-      {"\"compose\":[\"shader\",\"on_chip\"],", "\"compose\":[\"quads\",\"on_chip\"],",
+      {"\"compose\":[\"shader\"],", "\"compose\":[\"quads\"],",
        units + "compose: expected a unit that does the work of the stage"},
-      {"\"compose\":[\"shader\",\"on_chip\"],", "\"compose\":[\"l2\"],", units + "compose/0: expected one of"},
+      {"\"compose\":[\"shader\"],", "\"compose\":[\"l2\"],", units + "compose/0: expected one of"},
+      {"\"compose\":[\"shader\"],", "\"compose\":[\"latency\"],", units + "compose/0: expected one of"},
+      {"\"dram_clocks\":375,", "\"dram_clocks\":100,", "/rates/dram_clocks: expected at least the l2_clocks of 193"},
+      {"\"core_threads\":2048", "\"core_threads\":0.5", "/rates/core_threads: expected at least 1, found 0.5"},
       {"\"dram_efficiency\":0.77", "\"dram_efficiency\":1.5",
        "/rates/dram_efficiency: expected a number up to 1, found 1.5"},
       {"\"compose\":", "\"componse\":",
@@ -82,10 +93,10 @@ TEST(Hardware, ErrorsNameTheKey) {
        "/sources: expected the key \"clock_mhz\", found none"},
       {"\"boost clock, NVIDIA's product page\"", "\"\"",
        "/sources/clock_mhz: expected where the number is from, or that it is a choice, found nothing"},
-      {"[\"rop_samples\",", "[\"rop\",", units + "depth_test/0: expected one of \"on_chip\", \"composer\""},
+      {"[\"rop_samples\"]", "[\"rop\"]", units + "depth_test/0: expected one of \"composer\""},
       // The counters of `shade` say nothing to a unit of composition.
-      {"\"shade\":[\"quads\",", "\"shade\":[\"composer\",", units + "shade/0: expected one of \"on_chip\""},
-      {"\"compose\":[\"shader\",", "\"prepass_compose\":[\"shader\",",
+      {"\"shade\":[\"quads\",", "\"shade\":[\"composer\",", units + "shade/0: expected one of \"export\""},
+      {"\"compose\":[\"shader\"", "\"prepass_compose\":[\"shader\"",
        units + "prepass_compose: expected the name of a stage"}};
   for (const auto& [whole, broken, start] : cases) {
     const std::string error = refusal(whole, broken);

@@ -13,12 +13,14 @@ import tempfile
 import unittest
 
 NO_COSTS = {kind: {"operations": 0, "fetches": 0, "registers": 0} for kind in ("material", "light")}
-OF_CORES = {"shader", "texture", "quads", "mask_generator", "sorter", "composer"}
+OF_CORES = {"shader", "texture", "latency"}
 SPECS = ["beam", "beam:order=sorted", "casav", "msaa:8", "msaa:8,prepass", "acaa:8", "deferred", "taa:4", "dvm"]
 
 
-def unit_clocks(unit, stage, rates, on_chip):
-    """The clocks that a unit needs for the work of a stage."""
+def unit_clocks(unit, stage, described, on_chip, memory, threads):
+    """The clocks that a unit needs for the work of a stage. threads: in flight, of all cores."""
+    per_core = {name[len("core_"):]: rate * memory["cores"] for name, rate in described.items() if name.startswith("core_")}
+    rates = described | per_core
     ops, logical = stage["ops"], stage["bytes_read"] + stage["bytes_written"]
     pixels = logical / rates["on_chip_bytes_per_clk" if on_chip else "rop_bytes_per_clk"]
     if unit in ("shader", "shading"):
@@ -42,6 +44,11 @@ def unit_clocks(unit, stage, rates, on_chip):
         "sorter": [("items_in", "rop_fragments_per_clk")],
         "l2": [("l2_bytes", "l2_bytes_per_clk")],
     }
+    if unit == "latency":
+        dram = min(stage["dram_bytes"], stage["l2_bytes"])
+        sectors = (stage["l2_bytes"] - dram) * rates["l2_clocks"] + dram * rates["dram_clocks"]
+        return ((ops["total"] + ops["wide"] - ops["fetch"]) * rates["operation_clocks"] + 4 * sectors / memory["sector_bytes"]
+                + (ops["fetch"] + stage["texture_bytes"] / 16) * rates["fetch_clocks"]) / threads
     if unit == "quads":
         return stage["lanes_issued"] / 4 / rates["quads_per_clk"]
     if unit == "dram":
@@ -99,32 +106,42 @@ class ModelledTimesTest(unittest.TestCase):
             bin_bytes = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels")
             held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), memory["bins_per_core"]), 1)
             for way, implementation in hardware["implementations"].items():
-                before, of_bins, in_turn = {}, {}, 0
+                before, of_bins, in_turn, alone = {}, {}, 0, 0
                 units_of = {stage["stage"]: implementation["units"][stage["stage"].removeprefix("prepass_")]
                             for stage in frame["stages"]}
                 used = {unit for units in units_of.values() for unit in units}
                 has_rops = used & {"rop_samples", "rop_fragments", "composer"}
-                not_there = {"on_chip"} if has_rops else {"on_chip", "export"}
+                not_there = set() if has_rops else {"export"}
                 has_light = any(stage["stage"] == "light" for stage in frame["stages"])
                 for counted in frame["stages"]:
                     stage, registers = priced(counted, hardware.get("shading", NO_COSTS), has_light)
                     units = units_of[stage["stage"]]
-                    stall = memory["bins_per_core"] / held if "on_chip" in units and bin_bytes else 1
-                    times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0) / clocks_per_ms * stall
-                             for unit in units if unit not in not_there}
-                    times |= {unit: unit_clocks(unit, stage, rates, False) / clocks_per_ms for unit in ("l2", "dram")}
+                    is_geometry = stage["stage"].endswith("vertex_setup")
+                    threads = rates["core_threads"]
+                    if registers:
+                        threads = min(threads, rates["core_registers"] // registers)
+                    if not is_geometry:
+                        threads = min(threads, frame["bin_pixels"] * held)
+                    if {"shader", "shading"} & set(units):
+                        units = units + ["latency"]
+                    times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0, memory, threads * memory["cores"])
+                             / clocks_per_ms for unit in units + ["l2", "dram"] if unit not in not_there}
                     if "shading" in times:
-                        times["shading"] *= max(1, registers / rates["registers_at_full_rate"])
                         times["shader"] = max(times.pop("shading"), times.get("shader", 0))
                     compared.append((f"{part} {result['technique']} {way} {stage['stage']}", stage["modelled_ms"][way],
                                      max(times.values())))
                     in_turn += max(times.values())
-                    busy = before if stage["stage"].endswith("vertex_setup") else of_bins
                     for unit, ms in times.items():
+                        busy = before if is_geometry else of_bins
                         busy[unit] = busy.get(unit, 0) + ms
+                    if not is_geometry:  # what a bin takes that has its core and the shared units for itself
+                        shares = {"latency": held} | {unit: 1 for unit in OF_CORES - {"latency"}}
+                        alone += max(ms * shares.get(unit, 1 / memory["cores"]) for unit, ms in times.items())
                 longer = on_busiest_core(frame["bin_operations"], memory["cores"])
-                on_cores = max(before.values()) + max(ms * longer if unit in OF_CORES else ms
-                                                      for unit, ms in of_bins.items())
+                self.assertAlmostEqual(frame["bin_spread"]["busiest_core"], longer, delta=1e-9 * longer)
+                core = max(*(ms for unit, ms in of_bins.items() if unit in OF_CORES), alone / held)
+                on_cores = max(before.values()) + max(core * longer, *(ms for unit, ms in of_bins.items()
+                                                                      if unit not in OF_CORES))
                 at_once = max(before.get(unit, 0) + of_bins.get(unit, 0) for unit in before | of_bins)
                 for key, expected in (("in_turn", in_turn), ("on_cores", on_cores), ("at_once", at_once)):
                     compared.append((f"{part} {result['technique']} {way} {key}", frame["modelled_ms"][way][key], expected))

@@ -29,6 +29,7 @@ Report small_report() {
     stage.sector_bytes = stage.l2_bytes = stage.dram_bytes = 640;
     frame.stages = {stage};
     frame.bin_operations = {51200, 0, 400};
+    frame.bin_invocations = {4, 0, 8};
     result.frames.push_back(frame);
   }
   return report;
@@ -50,10 +51,10 @@ TEST(Remodel, OptionsOfTheRunHoldForOtherHardware) {
   report.hardware.memory = report.memory;
   Hardware slower = titan_v();
   slower.named = "slower.json";
-  slower.rates.at("bit_per_clk") /= 2;
+  slower.rates.at("core_bit_per_clk") /= 2;
   const Report again = remodelled(report_json(report), &slower);
   EXPECT_EQ(again.hardware.memory.on_chip_bytes, 64u * 1024);
-  EXPECT_EQ(again.hardware.rates.at("bit_per_clk"), 2560);
+  EXPECT_EQ(again.hardware.rates.at("core_bit_per_clk"), 32);
   EXPECT_EQ(times_json(again).at(0).at("bins_held"), 1);
 }
 

@@ -14,7 +14,8 @@ namespace beampipe::hostile_report_test {
 // Compared, with modelled times.
 const std::string kReport =
     R"({"beampipe_report": 2, "trace": "dots.json", "msaa_ladder": [{"samples": 1, "rmse": 0.1}],
-  "hardware": {"clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
+  "memory_system": {"modelled": false, "cores": 2},
+  "hardware": {"clock_mhz": 1000, "rates": {"core_issue_per_clk": 50, "dram_bytes_per_clk": 10},
                "implementations": {"shaders": {}}},
   "results": [{"technique": "beam", "framebuffer_bytes_per_pixel": 6, "peak_bytes_per_pixel": 6, "framebuffer": [],
     "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2}, "equivalent_msaa": 8,
@@ -123,7 +124,7 @@ TEST_F(HostileReport, CommandsNameTheFile) {
   const std::string file = (folder_ / "report.json").string();
   EXPECT_EQ(
       run_program({"model", folder_.string()}).err,
-      "beampipe: error: " + file + ": not a report of beampipe: expected the key \"memory_system\", found none\n");
+      "beampipe: error: " + file + ": not a report of beampipe: expected the key \"sector_bytes\", found none\n");
   write_text(folder_ / "report.json", replaced(kReport, R"("trace")", R"("claims": [{}], "trace")"));
   EXPECT_EQ(run_program({"claims", folder_.string()}).err,
             "beampipe: error: " + file + ": not a report of beampipe: expected the key \"name\", found none\n");
