@@ -45,7 +45,8 @@ TEST_P(ScenesTest, HasADefaultSize) {
       {"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3}, {"pickets", 5e3},  {"terrain", 150e3},
       {"sphere", 100e3},   {"fence", 60e3},      {"soup", 20e3}, {"foliage", 80e3}, {"bars", 4e3},
       {"density", 5760},   {"stack", 64},        {"room", 40e3}, {"rigging", 40e3}, {"leaves", 12e3},
-      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74}};
+      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74},  {"shrubs", 60e3},  {"library", 60e3},
+      {"scaffold", 50e3},  {"cables", 40e3},     {"crowd", 80e3}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }

@@ -1,5 +1,6 @@
 // beampipe compare: what run does, and how wrong each picture is.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "tools/cli/trace_events.h"
 #include "tools/evaluate/comparison.h"
 #include "tools/evaluate/draw_notes.h"
+#include "tools/evaluate/known_specs.h"
 
 namespace beampipe {
 namespace {
@@ -84,6 +86,10 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
       .one_of(metric_names())
       .shows_default();
   add_pixels_per_degree(command, options->pixels_per_degree);
+  const auto measures_reference = std::make_shared<bool>(false);
+  command.add_flag("--reference-error", *measures_reference,
+                   std::string("render ") + kSecondReferenceSpec +
+                       " too, report the reference's own error, and widen the ranges of equivalent rates by it");
   command.add_flag(
       "--causes", options->causes,
       "split each pixel's visibility error by cause, as layers of the counters and as a table (beam in every "
@@ -99,7 +105,11 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
       .between(0, 1000);
   command.add("--inspect", pixels->chosen, "X,Y of other pixels to record, in every frame");
   command.footer(kCompareFooter + technique_help());
-  command.set_work([arguments, options, pixels, &gate] { compare(*arguments, *options, *pixels, gate); });
+  command.set_work([arguments, options, pixels, measures_reference, &gate] {
+    if (*measures_reference && std::ranges::count(arguments->specs, kSecondReferenceSpec) == 0)
+      arguments->specs.emplace_back(kSecondReferenceSpec);
+    compare(*arguments, *options, *pixels, gate);
+  });
 }
 
 }  // namespace beampipe
