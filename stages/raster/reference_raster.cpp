@@ -4,11 +4,13 @@
 #include <bit>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "simd/depth_span.h"
 #include "simd/sample_pattern.h"
 #include "stages/data/mix_bits.h"
+#include "stages/raster/cutout_cells.h"
 #include "stages/raster/reference_raster_cost.h"
 
 namespace beampipe {
@@ -59,8 +61,9 @@ struct SampleRow {
 };
 
 // Takes the samples of a run at which a cutout is there, or lists those of a translucent triangle. Returns how many.
+// `cells`: of the cutout.
 std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t triangle, const SampleRow& row,
-                         const TileShader& shader, ReferenceTile& surface) {
+                         const TileShader& shader, CutoutCells* cells, ReferenceTile& surface) {
   const std::int64_t units = row.steps.units;
   const float unit = 1.0f / static_cast<float>(units);
   const bool is_cutout = shader.is_cutout(triangle);
@@ -80,7 +83,13 @@ std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t
         row.tile.index(static_cast<std::int32_t>(pixel_x), static_cast<std::int32_t>(pixel_y)));
     const float u = static_cast<float>(x - pixel_x * units) * unit;
     const float v = static_cast<float>(row.y - pixel_y * units) * unit;
-    if (shader.alpha(triangle, pixel, u, v, 0.0f) < shader.alpha_cutoff(triangle)) continue;
+    const std::int64_t column = (x - pixel_x * units) / row.steps.x;
+    const std::int64_t cell_row = (row.y - pixel_y * units) / (row.steps.y * kRowsPerCell);
+    const CutoutCover cover =
+        cells->cover(pixel, static_cast<std::int32_t>(column), static_cast<std::int32_t>(cell_row));
+    if (cover == CutoutCover::none) continue;
+    if (cover == CutoutCover::mixed && shader.alpha(triangle, pixel, u, v, 0.0f) < shader.alpha_cutoff(triangle))
+      continue;
     ++found;
     surface.depth[at] = depth;
     surface.owner[at] = triangle;
@@ -125,10 +134,15 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
     places.push_back(pattern.first_in_row(row));
     places.back().y += floor_quotient(row, pattern.rows()) * steps.units;
   }
+  std::optional<CutoutCells> cells;
   std::uint64_t covered = 0, nearer = 0;  // samples
   for (const std::uint32_t index : list) {
     const SetupTriangle& t = triangles.triangles[index];
     const auto [y_low, y_high] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    if (shader && shader->is_cutout(index)) {
+      if (!cells) cells.emplace(*shader, tile, pattern.columns);
+      cells->start(index);
+    }
     const Edge edges[3] = {edge_of(t, 0), edge_of(t, 1), edge_of(t, 2)};
     const std::int64_t first_row = std::max(top, floor_quotient(y_low * steps.scale, steps.y));
     const std::int64_t end_row = std::min(bottom, floor_quotient(y_high * steps.scale, steps.y) + 1);
@@ -151,7 +165,7 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
         continue;
       }
       const SampleRow samples{tile, steps, y, span.first * steps.x + offset, static_cast<std::uint32_t>(at)};
-      nearer += test_alpha(depths, count, index, samples, *shader, surface);
+      nearer += test_alpha(depths, count, index, samples, *shader, cells ? &*cells : nullptr, surface);
     }
   }
   charge_reference(covered, nearer, counters);

@@ -11,7 +11,7 @@ using glm::dvec3;
 // Metres. Shelves stand along both side walls and the back wall, which is z = 0.
 constexpr double kWidth = 6, kDepth = 9, kHeight = 3.2, kShelfDepth = 0.3, kShelfHeight = 2.8, kSideLength = 5.4;
 constexpr int kBoards = 7;
-constexpr glm::vec3 kWood(0.38f, 0.22f, 0.11f);
+constexpr glm::vec3 kShelfWood(0.38f, 0.22f, 0.11f);
 
 // Puts what stands at z = 0, with its back towards -z, along one of the walls.
 std::function<dvec3(const dvec3&)> along_wall(int wall) {
@@ -41,7 +41,7 @@ void add_shelves(MeshBuilder& wood, MeshBuilder& books, int wall, double length,
   const int uprights = static_cast<int>(length);  // one metre apart
   const double pitch = kShelfHeight / kBoards;
   wood.place = books.place = along_wall(wall);
-  wood.color = random.vary(kWood, 0.1);
+  wood.color = random.vary(kShelfWood, 0.1);
   for (int i = 0; i <= uprights; ++i) {
     const double x = length * i / uprights;
     wood.box({x - 0.015, 0, 0}, {x + 0.015, kShelfHeight, kShelfDepth});
@@ -66,7 +66,7 @@ void add_ladder(MeshBuilder& wood, Random& random) {
 }
 
 void add_table(MeshBuilder& wood, MeshBuilder& lamps, double z, int rings) {
-  wood.color = kWood;
+  wood.color = kShelfWood;
   wood.box({-1.1, 0.74, z - 0.4}, {1.1, 0.78, z + 0.4});
   for (const double x : {-1.0, 1.0})
     for (const double side : {-0.33, 0.33}) wood.tube(line({x, 0, z + side}, {x, 0.74, z + side}), 0.03, 6);

@@ -121,7 +121,7 @@ TEST(ReferencePatterns, ErrIndependently) {
   std::vector<std::vector<double>> errors;
   for (int set = 1; set <= 4; ++set) errors.push_back(errors_of_areas({16, set}));
   for (std::size_t a = 0; a < errors.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR(correlation(errors[a], errors[b]), 0, 0.2) << a << " " << b;
+    for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR(correlation(errors[a], errors[b]), 0, 0.3) << a << " " << b;
 }
 
 TEST(ReferencePatterns, MoreSamplesErrLess) {
