@@ -9,11 +9,11 @@ CutoutCells::CutoutCells(const TileShader& shader, const Tile& tile, std::int32_
       cells_(cells),
       pixels_(tile.pixels()),
       parts_(tile.pixels() * kParts * kParts),
-      of_cells_(tile.pixels() * static_cast<std::size_t>(cells * cells)) {}
+      squares_(tile.pixels() * static_cast<std::size_t>(cells * cells)) {}
 
 void CutoutCells::start(std::uint32_t triangle) {
   triangle_ = triangle;
-  for (std::vector<CutoutCover>* const covers : {&pixels_, &parts_, &of_cells_})
+  for (std::vector<CutoutCover>* const covers : {&pixels_, &parts_, &squares_})
     std::ranges::fill(*covers, CutoutCover::unknown);
 }
 

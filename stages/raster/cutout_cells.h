@@ -18,21 +18,25 @@ class CutoutCells {
   // Of the cutout to which the questions that follow belong.
   void start(std::uint32_t triangle);
 
-  // What the alpha test says for every point of a cell that lies in the triangle.
-  CutoutCover cover(std::uint32_t pixel, std::int32_t column, std::int32_t row) {
-    CutoutCover& of_pixel = pixels_[pixel];
-    if (of_pixel == CutoutCover::unknown) find(of_pixel, pixel, 0, 0, 1);
-    if (of_pixel != CutoutCover::mixed) return of_pixel;
+  // What the alpha test says for every point of a pixel, or of a cell, that lies in the triangle.
+  CutoutCover of_pixel(std::uint32_t pixel) {
+    CutoutCover& cover = pixels_[pixel];
+    if (cover == CutoutCover::unknown) find(cover, pixel, 0, 0, 1);
+    return cover;
+  }
+  CutoutCover of_cell(std::uint32_t pixel, std::int32_t column, std::int32_t row) {
+    const CutoutCover cover = of_pixel(pixel);
+    if (cover != CutoutCover::mixed) return cover;
     const std::int32_t part_x = column / (cells_ / kParts), part_y = row / (cells_ / kParts);
     CutoutCover& of_part =
         parts_[(pixel * kParts + static_cast<std::uint32_t>(part_y)) * kParts + static_cast<std::uint32_t>(part_x)];
     if (of_part == CutoutCover::unknown) find(of_part, pixel, part_x, part_y, kParts);
     if (of_part != CutoutCover::mixed) return of_part;
     const auto across = static_cast<std::uint32_t>(cells_);
-    CutoutCover& of_cell =
-        of_cells_[(pixel * across + static_cast<std::uint32_t>(row)) * across + static_cast<std::uint32_t>(column)];
-    if (of_cell == CutoutCover::unknown) find(of_cell, pixel, column, row, cells_);
-    return of_cell;
+    CutoutCover& cell =
+        squares_[(pixel * across + static_cast<std::uint32_t>(row)) * across + static_cast<std::uint32_t>(column)];
+    if (cell == CutoutCover::unknown) find(cell, pixel, column, row, cells_);
+    return cell;
   }
 
  private:
@@ -44,7 +48,7 @@ class CutoutCells {
   const TileShader& shader_;
   std::int32_t cells_;
   std::uint32_t triangle_ = 0;
-  std::vector<CutoutCover> pixels_, parts_, of_cells_;
+  std::vector<CutoutCover> pixels_, parts_, squares_;
 };
 
 }  // namespace beampipe

@@ -52,47 +52,58 @@ void cut(Span& span, std::int64_t a, std::int64_t step, std::int64_t offset, std
   }
 }
 
-// Samples of one row: where the first one lies, and its index in the tile.
-struct SampleRow {
+// A run of samples in a row.
+struct SampleRun {
   const Tile& tile;
-  const Steps& steps;
-  std::int64_t y, x;
-  std::uint32_t first;
+  const ReferencePattern& pattern;
+  std::int64_t row, column;  // of the first sample, in the frame
+  std::int64_t x, y;         // of its place in the pixel, in units
+  std::uint32_t at;          // its index in the tile
+  std::size_t count;
 };
 
-// Takes the samples of a run at which a cutout is there, or lists those of a translucent triangle. Returns how many.
-// `cells`: of the cutout.
-std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t triangle, const SampleRow& row,
-                         const TileShader& shader, CutoutCells* cells, ReferenceTile& surface) {
-  const std::int64_t units = row.steps.units;
-  const float unit = 1.0f / static_cast<float>(units);
-  const bool is_cutout = shader.is_cutout(triangle);
-  const std::int64_t pixel_y = floor_quotient(row.y, units);
+// Lists the samples of a run that a translucent triangle may be seen at. Returns how many.
+std::uint64_t list_layers(const DepthSpan& span, std::uint32_t triangle, const SampleRun& run, ReferenceTile& surface) {
   std::uint64_t found = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = row.first + i;
+  for (std::size_t i = 0; i < run.count; ++i) {
+    const auto at = static_cast<std::uint32_t>(run.at + i);
     double depth = 0;
     if (!depth_span_sample(span, static_cast<double>(i), surface.depth[at], depth)) continue;
-    if (!is_cutout) {
-      ++found;
-      surface.layers.push_back({static_cast<std::uint32_t>(at), triangle, depth});
-      continue;
-    }
-    const std::int64_t x = row.x + row.steps.x * static_cast<std::int64_t>(i), pixel_x = floor_quotient(x, units);
-    const auto pixel = static_cast<std::uint32_t>(
-        row.tile.index(static_cast<std::int32_t>(pixel_x), static_cast<std::int32_t>(pixel_y)));
-    const float u = static_cast<float>(x - pixel_x * units) * unit;
-    const float v = static_cast<float>(row.y - pixel_y * units) * unit;
-    const std::int64_t column = (x - pixel_x * units) / row.steps.x;
-    const std::int64_t cell_row = (row.y - pixel_y * units) / (row.steps.y * kRowsPerCell);
-    const CutoutCover cover =
-        cells->cover(pixel, static_cast<std::int32_t>(column), static_cast<std::int32_t>(cell_row));
-    if (cover == CutoutCover::none) continue;
-    if (cover == CutoutCover::mixed && shader.alpha(triangle, pixel, u, v, 0.0f) < shader.alpha_cutoff(triangle))
-      continue;
     ++found;
-    surface.depth[at] = depth;
-    surface.owner[at] = triangle;
+    surface.layers.push_back({at, triangle, depth});
+  }
+  return found;
+}
+
+// Takes the samples of a run at which a cutout is there. Returns how many.
+std::uint64_t take_cutout(const DepthSpan& span, std::uint32_t triangle, const SampleRun& run, const TileShader& shader,
+                          CutoutCells& cells, ReferenceTile& surface) {
+  const float unit = 1.0f / static_cast<float>(run.pattern.units());
+  const int log_columns = std::countr_zero(static_cast<std::uint32_t>(run.pattern.columns));
+  const std::int64_t last_column = run.pattern.columns - 1, step = run.pattern.units() / run.pattern.columns;
+  const auto pixel_y = static_cast<std::int32_t>(floor_quotient(run.row, run.pattern.rows()));
+  const auto cell_row = static_cast<std::int32_t>((run.row & (run.pattern.rows() - 1)) / kRowsPerCell);
+  const float v = static_cast<float>(run.y) * unit, cutoff = shader.alpha_cutoff(triangle);
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < run.count;) {
+    const std::int64_t first = run.column + static_cast<std::int64_t>(i);
+    const auto pixel =
+        static_cast<std::uint32_t>(run.tile.index(static_cast<std::int32_t>(first >> log_columns), pixel_y));
+    const std::size_t end = std::min(run.count, i + static_cast<std::size_t>(last_column - (first & last_column)) + 1);
+    if (cells.of_pixel(pixel) == CutoutCover::none) i = end;
+    for (; i < end; ++i) {
+      const std::size_t at = run.at + i;
+      double depth = 0;
+      if (!depth_span_sample(span, static_cast<double>(i), surface.depth[at], depth)) continue;
+      const std::int64_t column = (run.column + static_cast<std::int64_t>(i)) & last_column;
+      const CutoutCover cover = cells.of_cell(pixel, static_cast<std::int32_t>(column), cell_row);
+      if (cover == CutoutCover::none) continue;
+      const float u = static_cast<float>(run.x + step * column) * unit;
+      if (cover == CutoutCover::mixed && shader.alpha(triangle, pixel, u, v, 0.0f) < cutoff) continue;
+      ++found;
+      surface.depth[at] = depth;
+      surface.owner[at] = triangle;
+    }
   }
   return found;
 }
@@ -164,8 +175,10 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
         nearer += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
         continue;
       }
-      const SampleRow samples{tile, steps, y, span.first * steps.x + offset, static_cast<std::uint32_t>(at)};
-      nearer += test_alpha(depths, count, index, samples, *shader, cells ? &*cells : nullptr, surface);
+      const SampleRun run{tile, pattern, row, span.first, offset, y & (steps.units - 1), static_cast<std::uint32_t>(at),
+                          count};
+      nearer += cells && shader->is_cutout(index) ? take_cutout(depths, index, run, *shader, *cells, surface)
+                                                  : list_layers(depths, index, run, surface);
     }
   }
   charge_reference(covered, nearer, counters);

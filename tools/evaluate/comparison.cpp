@@ -101,7 +101,7 @@ ErrorAccumulator Comparison::new_errors() const {
 
 void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   WallTime reference_time;
-  const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
+  const FrameResult truth = render_kept(reference_, plan_, frame, progress, &reference_time);
   FrameReport reference = write_frame(output_, plan_, maker_, {reference_.spec, frame, truth});
   reference.wall_ms = reference_time;
   reference.error = no_error();
@@ -207,18 +207,9 @@ void Comparison::report_parts(Report& report, Progress& progress) {
 // The errors of each technique over all frames. The means over pixels come from the frames' reports.
 void Comparison::pool_errors() {
   for (std::size_t i = 0; i < results_.size(); ++i) {
-    ErrorStats& stats = results_[i].error.emplace(errors_[i].stats());
-    double pixels = 0;
-    for (const FrameReport& frame : results_[i].frames) {
-      const auto frame_pixels = static_cast<double>(frame.pixels);
-      pixels += frame_pixels;
-      for (const Measure& measure : measures())
-        if (measure.stored)
-          stats.*measure.stored = (stats.*measure.stored).value_or(0) +
-                                  pooled_part(measure, *(*frame.error.*measure.stored)) * frame_pixels;
-    }
-    for (const Measure& measure : measures())
-      if (measure.stored) stats.*measure.stored = pooled(measure, *(stats.*measure.stored) / pixels);
+    MeasurePool pool;
+    for (const FrameReport& frame : results_[i].frames) pool.add(*frame.error, frame.pixels);
+    pool.finish(results_[i].error.emplace(errors_[i].stats()));
   }
 }
 

@@ -11,7 +11,7 @@ using glm::dvec3;
 // Metres. A street between two rows of houses; cables hang across it and along it.
 constexpr double kStreet = 8, kEnd = -50;
 
-void add_houses(MeshBuilder& houses, Random& random) {
+void add_houses(MeshBuilder& houses, bool has_windows, Random& random) {
   for (const double side : {-1.0, 1.0}) {
     for (double z = 4; z > kEnd;) {
       const double front = random.uniform(5, 9), height = random.uniform(5, 9);
@@ -19,7 +19,7 @@ void add_houses(MeshBuilder& houses, Random& random) {
       const double wall = side * kStreet / 2, back = side * (kStreet / 2 + 6);
       houses.box({std::min(wall, back), 0, z - front}, {std::max(wall, back), height, z});
       houses.color = random.vary({0.15f, 0.17f, 0.20f}, 0.3);
-      for (double y = 1; y < height - 1.5; y += 2.4)
+      for (double y = 1; has_windows && y < height - 1.5; y += 2.4)
         for (double at = 0.8; at < front - 1; at += 1.8) {
           const double low = wall - 0.03, high = wall + 0.03;
           houses.box({low, y, z - at - 0.9}, {high, y + 1.3, z - at});
@@ -30,9 +30,9 @@ void add_houses(MeshBuilder& houses, Random& random) {
 }
 
 // Poles with crossbars, and what they bear at each end of the crossbars.
-std::vector<std::vector<dvec3>> add_poles(MeshBuilder& poles, Random& random) {
+std::vector<std::vector<dvec3>> add_poles(MeshBuilder& poles, double distance, Random& random) {
   std::vector<std::vector<dvec3>> ends;
-  for (double z = 0; z > kEnd; z -= 9) {
+  for (double z = 0; z > kEnd; z -= distance) {
     const double x = 2.9 + random.uniform(-0.1, 0.1);
     poles.color = random.vary({0.32f, 0.25f, 0.18f}, 0.15);
     poles.tube(line({x, 0, z}, {x, 6.6, z}), 0.12, 0.08, 8);
@@ -49,8 +49,9 @@ std::vector<Mesh> cable_meshes(double budget, Random& random) {
   MeshBuilder ground("ground"), houses("houses"), poles("poles"), cables("cables");
   ground.color = {0.30f, 0.30f, 0.31f};
   ground.quad({-40, 0, 12}, {40, 0, 12}, {40, 0, kEnd}, {-40, 0, kEnd});
-  add_houses(houses, random);
-  const std::vector<std::vector<dvec3>> ends = add_poles(poles, random);
+  const bool is_small = budget < 12000;
+  add_houses(houses, !is_small, random);
+  const std::vector<std::vector<dvec3>> ends = add_poles(poles, is_small ? 18 : 9, random);
   const double left =
       std::max(0.4 * budget, budget - static_cast<double>(houses.triangle_count() + poles.triangle_count()));
   const int across = std::clamp(static_cast<int>(left / 400), 6, 120), sides = 3;
@@ -79,7 +80,9 @@ std::vector<Mesh> cable_meshes(double budget, Random& random) {
 Trace make_cables(const SceneOptions& options) {
   const Camera camera{
       .eye = {-0.8, 1.7, 9}, .target = {0, 3.6, -6}, .up = {0, 1, 0}, .fovy_deg = 42, .near = 0.5, .far = 90};
-  return one_frame(options, camera, build_to_budget(options, 40000, cable_meshes));
+  Trace trace = one_frame(options, camera, build_to_budget(options, 40000, cable_meshes));
+  trace.frames[0].draws[1].shading = Shading::unlit;  // the light reaches one side of the street only
+  return trace;
 }
 
 }  // namespace beampipe

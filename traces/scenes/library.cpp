@@ -10,7 +10,6 @@ using glm::dvec3;
 
 // Metres. Shelves stand along both side walls and the back wall, which is z = 0.
 constexpr double kWidth = 6, kDepth = 9, kHeight = 3.2, kShelfDepth = 0.3, kShelfHeight = 2.8, kSideLength = 5.4;
-constexpr int kBoards = 7;
 constexpr glm::vec3 kShelfWood(0.38f, 0.22f, 0.11f);
 
 // Puts what stands at z = 0, with its back towards -z, along one of the walls.
@@ -37,23 +36,30 @@ void add_books(MeshBuilder& books, double length, double bottom, double space, d
   }
 }
 
-void add_shelves(MeshBuilder& wood, MeshBuilder& books, int wall, double length, double width, Random& random) {
-  const int uprights = static_cast<int>(length);  // one metre apart
-  const double pitch = kShelfHeight / kBoards;
+// `boards`: above each other; `field`: the distance of uprights, about; `width`: as above.
+struct Shelves {
+  int boards;
+  double field, width;
+};
+
+void add_shelves(MeshBuilder& wood, MeshBuilder& books, int wall, double length, const Shelves& shelves,
+                 Random& random) {
+  const int uprights = static_cast<int>(length / shelves.field);
+  const double pitch = kShelfHeight / shelves.boards;
   wood.place = books.place = along_wall(wall);
   wood.color = random.vary(kShelfWood, 0.1);
   for (int i = 0; i <= uprights; ++i) {
     const double x = length * i / uprights;
     wood.box({x - 0.015, 0, 0}, {x + 0.015, kShelfHeight, kShelfDepth});
   }
-  for (int k = 0; k <= kBoards; ++k)
+  for (int k = 0; k <= shelves.boards; ++k)
     for (int i = 0; i < uprights; ++i) {
       const double from = length * i / uprights + 0.015, to = length * (i + 1) / uprights - 0.015, y = k * pitch;
       wood.box({from, y, 0}, {to, y + 0.025, kShelfDepth});
-      if (k == kBoards) continue;
+      if (k == shelves.boards) continue;
       const auto place = along_wall(wall);
       books.place = [=](const dvec3& p) { return place(dvec3(p.x + from, p.y, p.z)); };
-      add_books(books, to - from, y + 0.025, pitch - 0.025, width, random);
+      add_books(books, to - from, y + 0.025, pitch - 0.025, shelves.width, random);
     }
   wood.place = books.place = nullptr;
 }
@@ -77,25 +83,28 @@ void add_table(MeshBuilder& wood, MeshBuilder& lamps, double z, int rings) {
 }
 
 std::vector<Mesh> library_meshes(double budget, Random& random) {
-  MeshBuilder room("room"), wood("wood"), books("books"), lamps("lamps");
+  MeshBuilder ceiling("ceiling"), room("room"), wood("wood"), books("books"), lamps("lamps");
   room.color = {0.42f, 0.36f, 0.30f};
   room.quad({-3, 0, kDepth}, {3, 0, kDepth}, {3, 0, 0}, {-3, 0, 0});
   room.color = {0.66f, 0.62f, 0.54f};
   room.quad({-3, 0, 0}, {3, 0, 0}, {3, kHeight, 0}, {-3, kHeight, 0});
   room.quad({-3, 0, kDepth}, {-3, 0, 0}, {-3, kHeight, 0}, {-3, kHeight, kDepth});
   room.quad({3, 0, 0}, {3, 0, kDepth}, {3, kHeight, kDepth}, {3, kHeight, 0});
-  room.color = {0.75f, 0.74f, 0.70f};
-  room.quad({-3, kHeight, 0}, {3, kHeight, 0}, {3, kHeight, kDepth}, {-3, kHeight, kDepth});
+  ceiling.color = {0.40f, 0.39f, 0.36f};
+  ceiling.quad({-3, kHeight, 0}, {3, kHeight, 0}, {3, kHeight, kDepth}, {-3, kHeight, kDepth});
   const int rings = divisions(0.02 * budget, 8, 4);
-  for (const double z : {2.4, 4.4}) add_table(wood, lamps, z, rings);
-  add_ladder(wood, random);
+  const bool is_small = budget < 8000;
+  add_table(wood, lamps, 4.4, rings);
+  if (!is_small) add_table(wood, lamps, 2.4, rings);
+  if (!is_small) add_ladder(wood, random);
+  Shelves shelves{is_small ? 2 : 7, is_small ? 2.0 : 1.0, 0};
   // A book has 12 triangles.
-  const double boards = (kWidth + 2 * kSideLength) * kBoards;
-  const double left = std::max(0.1 * budget, budget - 3000.0);
-  const double width = std::min(0.5, 12 * boards / left);
-  add_shelves(wood, books, 0, kWidth, width, random);
-  for (const int wall : {1, 2}) add_shelves(wood, books, wall, kSideLength, width, random);
-  return {room.take(), wood.take(), books.take(), lamps.take()};
+  const double length = (kWidth + 2 * kSideLength) * shelves.boards;
+  const double left = std::max(0.1 * budget, budget - (is_small ? 600.0 : 3000.0));
+  shelves.width = std::min(0.6, 12 * length / left);
+  add_shelves(wood, books, 0, kWidth, shelves, random);
+  for (const int wall : {1, 2}) add_shelves(wood, books, wall, kSideLength, shelves, random);
+  return {ceiling.take(), room.take(), wood.take(), books.take(), lamps.take()};
 }
 
 }  // namespace
@@ -103,7 +112,9 @@ std::vector<Mesh> library_meshes(double budget, Random& random) {
 Trace make_library(const SceneOptions& options) {
   const Camera camera{
       .eye = {0.7, 1.65, 8.6}, .target = {-0.3, 1.35, 0}, .up = {0, 1, 0}, .fovy_deg = 40, .near = 0.2, .far = 30};
-  return one_frame(options, camera, build_to_budget(options, 60000, library_meshes));
+  Trace trace = one_frame(options, camera, build_to_budget(options, 60000, library_meshes));
+  trace.frames[0].draws[0].shading = Shading::unlit;  // the light comes from above
+  return trace;
 }
 
 }  // namespace beampipe

@@ -10,15 +10,13 @@ using glm::dvec3;
 
 // Metres. The wall is z = 0; the scaffold stands in front of it, in two rows of posts.
 constexpr double kWidth = 26, kStorey = 2.0, kNear = 1.5, kFar = 0.4;
-constexpr int kStoreys = 7;
 
 // A bar as an upright prism, in short pieces if there are triangles for them.
 void add_bar(MeshBuilder& bars, const dvec3& a, const dvec3& b, double radius, int sides, int pieces) {
   bars.tube(line(a, b, pieces), radius, sides);
 }
 
-void add_wall(MeshBuilder& wall, double budget, Random& random) {
-  const int columns = 14, rows = kStoreys + 1;
+void add_wall(MeshBuilder& wall, double budget, int columns, int rows, Random& random) {
   wall.color = {0.62f, 0.50f, 0.40f};
   wall.quad({-20, 0, 0}, {20, 0, 0}, {20, 20, 0}, {-20, 20, 0});
   for (int i = 0; i < columns; ++i)
@@ -35,7 +33,7 @@ void add_wall(MeshBuilder& wall, double budget, Random& random) {
 // A net of thin threads hangs before a part of the scaffold.
 void add_net(MeshBuilder& net, double budget) {
   constexpr double kLeft = 2, kRight = 9, kLow = 4, kHigh = 10;
-  const int count = std::clamp(static_cast<int>(budget / 10 / 2), 4, 160);
+  const int count = std::clamp(static_cast<int>(budget / 10 / 2), 2, 160);
   net.color = {0.12f, 0.38f, 0.20f};
   for (int i = 0; i <= count; ++i) {
     const double x = kLeft + (kRight - kLeft) * i / count, y = kLow + (kHigh - kLow) * i / count;
@@ -48,15 +46,17 @@ std::vector<Mesh> scaffold_meshes(double budget, Random& random) {
   MeshBuilder ground("ground"), wall("wall"), bars("bars"), planks("planks"), net("net");
   ground.color = {0.34f, 0.33f, 0.31f};
   ground.quad({-40, 0, 30}, {40, 0, 30}, {40, 0, 0}, {-40, 0, 0});
-  add_wall(wall, budget, random);
+  const double scale = std::min(1.0, std::sqrt(budget / 14000));
+  const int bays = std::max(3, static_cast<int>(13 * scale)), storeys = std::max(2, static_cast<int>(7 * scale));
+  const int sides = budget < 20000 ? 4 : 8;
+  add_wall(wall, budget, bays + 1, storeys + 1, random);
   add_net(net, 0.15 * budget);
-  const int bays = budget < 6000 ? 6 : 13, sides = budget < 20000 ? 4 : 8;
   // Bars of a bay and storey: two posts, four ledgers, one that joins the rows, and a brace.
-  const int pieces = std::max(1, static_cast<int>(0.8 * budget / (bays * kStoreys * 8.0) / (2 * sides)));
+  const int pieces = std::max(1, static_cast<int>(0.8 * budget / (bays * storeys * 8.0) / (2 * sides)));
   const double bay = kWidth / bays;
   for (int i = 0; i <= bays; ++i) {
     const double x = -kWidth / 2 + bay * i;
-    for (int k = 0; k < kStoreys; ++k) {
+    for (int k = 0; k < storeys; ++k) {
       const double y = kStorey * k, top = y + kStorey;
       bars.color = random.vary({0.62f, 0.64f, 0.67f}, 0.15);
       for (const double z : {kNear, kFar}) {
