@@ -145,10 +145,12 @@ std::map<std::uint64_t, double> shares_of_samples(const ReferenceTile& surface, 
                                                   const TileShader& shader) {
   std::map<std::uint64_t, double> shares;
   auto layer = layers.begin();
-  for (std::size_t row = 0; row < kReferenceRows; ++row) {
-    for (std::size_t s = 0; s < kReferenceColumns; ++s) {
-      const std::size_t sample = (y * kReferenceRows + row) * surface.row_samples + x * kReferenceColumns + s;
-      double light = 1.0 / kReferenceSamples;
+  const auto rows = static_cast<std::size_t>(surface.pattern.rows());
+  const auto columns = static_cast<std::size_t>(surface.pattern.columns);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t s = 0; s < columns; ++s) {
+      const std::size_t sample = (y * rows + row) * surface.row_samples + x * columns + s;
+      double light = 1.0 / surface.pattern.samples();
       for (; layer != layers.end() && layer->sample == sample; ++layer) {
         const double alpha = shader.color_and_alpha(layer->triangle, static_cast<std::uint32_t>(pixel), 0.5f, 0.5f).a;
         shares[layer->triangle] += light * alpha;

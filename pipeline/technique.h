@@ -2,6 +2,7 @@
 // few also use a technique's own header, such as pipeline/techniques/msaa.h.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -44,6 +45,11 @@ struct FrameInput {
   const std::vector<PixelAddress>* pixels = nullptr;
 };
 
+// Of the bins of a frame.
+struct Completion {
+  std::atomic<std::size_t> finished = 0, all = 0;
+};
+
 // Where to collect what a result does not have; null: nowhere. It changes nothing that is rendered or counted.
 struct FrameSinks {
   Timeline* timeline = nullptr;  // stage calls with their times
@@ -51,7 +57,8 @@ struct FrameSinks {
   std::vector<PixelWeights>* weights = nullptr;
   // What happened in each of FrameInput::pixels. Only techniques that are observable fill it.
   std::vector<PixelHistory>* histories = nullptr;
-  DramTrace* dram_trace = nullptr;  // DRAM requests, if memory is modelled
+  DramTrace* dram_trace = nullptr;   // DRAM requests, if memory is modelled
+  Completion* completion = nullptr;  // how much of the frame is rendered; other threads may read it
 
   bool operator==(const FrameSinks&) const = default;
 };

@@ -36,6 +36,11 @@ const std::vector<SceneKind>& scene_kinds() {
        true},
       {"tiles", "a checkered floor up to the horizon, with boxes whose textures are stripes and rings", make_tiles,
        true},
+      {"shrubs", "bushes of pointed leaves in high grass", make_shrubs, false, true},
+      {"library", "a room with shelves full of books", make_library, false, true},
+      {"scaffold", "thin bars, planks and a net in front of a wall with windows", make_scaffold, false, true},
+      {"cables", "cables, thinner than a pixel, that hang across a street and along it", make_cables, false, true},
+      {"crowd", "hundreds of small figures up to the end of a square", make_crowd, false, true},
   };
   return kinds;
 }

@@ -22,6 +22,8 @@ struct SceneKind {
   std::string_view description;  // one line that says what makes it hard
   Trace (*make)(const SceneOptions&);
   bool has_materials = false;  // of all triangles; otherwise each triangle has one colour
+  // Only measured: no rule and no constant of a technique was or may be chosen on it.
+  bool is_held_out = false;
 };
 
 // All procedural scenes, in a fixed order.

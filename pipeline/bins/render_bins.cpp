@@ -112,6 +112,18 @@ struct EmptyBin {
   }
 };
 
+// Counts a bin as finished when it ends.
+struct CountedBin {
+  Completion* const completion;
+
+  explicit CountedBin(Completion* of) : completion(of) {}
+  ~CountedBin() {
+    if (completion) ++completion->finished;
+  }
+  CountedBin(const CountedBin&) = delete;
+  CountedBin& operator=(const CountedBin&) = delete;
+};
+
 // Renders bins without triangles, one of each size.
 class EmptyBins {
  public:
@@ -344,6 +356,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   std::uint64_t list_bytes = 0;
   EmptyBins empty_bins(context, framebuffer, stages, render, grid.tiles.size());
   const bool shares_empty_bins = !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
+  if (sinks.completion) sinks.completion->finished = 0, sinks.completion->all = grid.tiles.size();
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -355,6 +368,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
     if (band.first == 0) recorder.start(empty_bins.color());
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
+      const CountedBin counted(sinks.completion);
       const auto is_here = [&](const PixelAddress& pixel) { return grid.tiles[band.first + i].holds(pixel); };
       if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;
       if (is_shared(i)) {

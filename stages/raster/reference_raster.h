@@ -1,4 +1,4 @@
-// reference_raster: setup triangles -> the nearest triangle at each of 4096 samples per pixel.
+// reference_raster: setup triangles -> the nearest triangle at each of 4096 samples per pixel, or 16,384.
 //
 // This is the reference that every technique is compared with, on the same snapped triangles. It computes the span of
 // samples that a triangle covers in each sample row by exact integer division, independently of the edge tests of
@@ -8,6 +8,9 @@
 // different x. Vertical and horizontal edges at multiples of 1/256 px therefore get their exact area. A regular 64 x 64
 // grid would be wrong by up to 1/128 px, and so would every pattern that shares its columns (8x super-resolved to 256x
 // does).
+//
+// Other sets measure the error of this one. Their shifts are scrambled as in A. B. Owen: Randomly Permuted (t,m,s)-Nets
+// and (t,s)-Sequences, 1995, which keeps what is said above, and a sample lies anywhere between its row's borders.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +24,22 @@
 
 namespace beampipe {
 
-inline constexpr std::int32_t kReferenceRows = 256;    // sample rows per pixel
-inline constexpr std::int32_t kReferenceColumns = 16;  // samples per row and pixel
-inline constexpr std::int32_t kReferenceSamples = kReferenceRows * kReferenceColumns;
+// Where the samples of a pixel are.
+struct ReferencePattern {
+  std::int32_t columns = 16;  // samples per row and pixel: 16 or 32
+  int set = 1;                // 1: bit-reversed numbers; others, up to 4, are scrambled
+
+  std::int32_t rows() const { return 16 * columns; }  // per pixel
+  std::int32_t samples() const { return columns * rows(); }
+  std::int32_t units() const { return 2 * samples(); }  // of positions, per pixel
+
+  // The place of a row's first sample in the pixel, in these units. `row` counts from the top of any pixel.
+  struct Place {
+    std::int64_t x, y;
+  };
+  Place first_in_row(std::int64_t row) const;
+};
+
 inline constexpr std::uint64_t kNoOwner = ~std::uint64_t{0};
 
 // The samples of a tile: sample rows from top to bottom, each across the whole tile.
@@ -39,8 +55,9 @@ struct ReferenceTile {
     double depth;
   };
   std::vector<Layer> layers;  // in primitive order; some may lie behind the owner
+  ReferencePattern pattern;
 
-  explicit ReferenceTile(const Tile& tile);
+  explicit ReferenceTile(const Tile& tile, const ReferencePattern& pattern = {});
 };
 
 // Counts as items out the samples at which a triangle is nearer than all earlier ones.
@@ -52,11 +69,10 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
 // near to far. Layers of equal depth stay in primitive order.
 std::vector<std::vector<ReferenceTile::Layer>> layers_of_pixels(const ReferenceTile& surface, const Tile& tile);
 
-// Surfaces that vary are shaded 256 times per pixel: in each of 16x16 cells, each triangle once for its samples there,
-// at their mean position, with the part of its textures that the cell covers. Translucent layers are composed at every
-// sample, sorted by depth.
-inline constexpr std::int32_t kReferenceCells = 16;  // per pixel, in x and y
-
+// Surfaces that vary are shaded 256 times per pixel, or 1024 times: in each of 16 x 16 cells of 16 samples, each
+// triangle once for its samples there, at their mean position, with the part of its textures that the cell covers.
+// Translucent layers are composed at every sample, sorted by depth.
+//
 // Returns the mean of each pixel's samples, summed in double precision: RGBA per pixel of the tile.
 std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters);

@@ -25,15 +25,14 @@ inline void charge_reference(std::uint64_t covered, std::uint64_t nearer, StageC
   counters.lanes_issued += covered;
 }
 
-// Three channels are summed over the samples and divided.
-inline void charge_reference_resolve(std::uint64_t pixels, StageCounters& counters) {
-  constexpr std::uint64_t kSamples = kReferenceSamples;
+// Three channels are summed over the samples of each pixel and divided.
+inline void charge_reference_resolve(std::uint64_t pixels, std::uint64_t samples, StageCounters& counters) {
   constexpr OperationCounts sum{.add = 3}, mean{.mul_add = 3};
-  counters.items_in += pixels * kSamples;
+  counters.items_in += pixels * samples;
   counters.items_out += pixels;
-  counters.ops += sum * (pixels * kSamples);
+  counters.ops += sum * (pixels * samples);
   counters.ops += mean * pixels;
-  counters.bytes_read += pixels * kSamples * sizeof(std::uint64_t);
+  counters.bytes_read += pixels * samples * sizeof(std::uint64_t);
   counters.bytes_written += pixels * sizeof(glm::vec4);
 }
 

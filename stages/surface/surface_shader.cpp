@@ -7,6 +7,7 @@
 
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
+#include "stages/surface/alpha_range.h"
 #include "stages/surface/lit_colors.h"
 #include "stages/surface/texture_filter.h"
 
@@ -330,6 +331,46 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
       });
   if (!tested) return {alpha >= cutoff ? 1.0f : 0.0f};
   return {tested->share(shares, cutoff / alpha), true};
+}
+
+// Texture coordinates and vertex alphas are quotients of linear functions. As long as the divisor is positive, they are
+// largest and smallest at corners.
+CutoutCover SurfaceShader::cutout_cover(std::uint32_t triangle, const ShadingPlace& corner, float side) const {
+  constexpr float kRounding = 1e-5f;  // of the filter and of products, generously
+  const SetupSurface& surface = triangles_.surfaces[triangle];
+  for (const std::uint32_t vertex : surface.vertices)
+    if (!(triangles_.vertices[vertex].color[3] <= 1.0f)) return CutoutCover::mixed;
+  if (!(material(triangle).base_color.a <= 1.0f)) return CutoutCover::mixed;
+  const Texture* texture = nullptr;
+  glm::vec2 low(0.0f), high(0.0f);
+  AlphaRange factor{1, 0};  // of all but the texture
+  for (int i = 0; i < 4; ++i) {
+    const ShadingPlace place{corner.x, corner.y, corner.u + (i % 2 == 0 ? 0 : side), corner.v + (i < 2 ? 0 : side)};
+    const float x = static_cast<float>(place.x) + place.u - surface.anchor_x,
+                y = static_cast<float>(place.y) + place.v - surface.anchor_y;
+    const Barycentrics<float> weights = weights_at(surface.planes, x, y);
+    const auto is_limited = [](float weight) { return !(weight > -kMostWeight && weight < 1 + kMostWeight); };
+    if (!(surface.planes.inverse_w.at(x, y) > 0) || is_limited(weights.second) || is_limited(weights.third))
+      return CutoutCover::mixed;
+    const float alpha =
+        alpha_there(triangle, place, 0.0f, [&](const Texture& of, const glm::vec2& uv, const TextureSlopes&) {
+          low = texture ? glm::min(low, uv) : uv;
+          high = texture ? glm::max(high, uv) : uv;
+          texture = &of;
+          return 1.0f;
+        });
+    factor = {std::min(factor.least, alpha), std::max(factor.most, alpha)};
+  }
+  AlphaRange of_texture;
+  if (texture) {
+    const std::optional<AlphaRange> found =
+        alpha_range(textures_->chain(texture->image, ColorSpace::srgb), *texture, low, high);
+    if (!found) return CutoutCover::mixed;
+    of_texture = *found;
+  }
+  const float cutoff = alpha_cutoff(triangle);
+  if (factor.least * of_texture.least * (1 - kRounding) >= cutoff) return CutoutCover::all;
+  return factor.most * of_texture.most * (1 + kRounding) < cutoff ? CutoutCover::none : CutoutCover::mixed;
 }
 
 void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& shader, PointInputs<float>* inputs,

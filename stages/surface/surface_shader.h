@@ -54,6 +54,10 @@ struct ShadingRules {
   bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };
 
+// What the alpha test says about the points of an area: all or none of them pass, or it may be some. `unknown`: nobody
+// has asked.
+enum class CutoutCover : std::uint8_t { unknown, none, mixed, all };
+
 class SurfaceShader {
  public:
   // All but the rules must outlive it. `textures`: of the trace; may be null if all triangles are flat.
@@ -98,6 +102,10 @@ class SurfaceShader {
   };
   CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
                          TexelRequests* texels = nullptr) const;
+
+  // What the test of alpha(), of points without an area, says for all points of a square that lie in the triangle.
+  // `corner`: the upper left one; `side`: in pixels.
+  CutoutCover cutout_cover(std::uint32_t triangle, const ShadingPlace& corner, float side) const;
 
   bool is_opaque(std::uint32_t triangle) const { return triangles_.is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const {
@@ -218,6 +226,9 @@ class TileShader {
   SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
                                         TexelRequests* texels = nullptr) const {
     return shader_->cutout_part(triangle, place(pixel, u, v), width, texels);
+  }
+  CutoutCover cutout_cover(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float side) const {
+    return shader_->cutout_cover(triangle, place(pixel, u, v), side);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }

@@ -36,6 +36,7 @@ class Program {
       dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
       dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0666), STDOUT_FILENO);
       dup2(terminal >= 0 ? terminal : open(err.c_str(), O_WRONLY | O_CREAT, 0666), STDERR_FILENO);
+      setenv("XDG_CACHE_HOME", (output_ / "cache").c_str(), 1);  // no run sees what another one has kept
       execv(argv[0], argv.data());
       _exit(127);
     }

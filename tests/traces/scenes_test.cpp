@@ -45,7 +45,8 @@ TEST_P(ScenesTest, HasADefaultSize) {
       {"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3}, {"pickets", 5e3},  {"terrain", 150e3},
       {"sphere", 100e3},   {"fence", 60e3},      {"soup", 20e3}, {"foliage", 80e3}, {"bars", 4e3},
       {"density", 5760},   {"stack", 64},        {"room", 40e3}, {"rigging", 40e3}, {"leaves", 12e3},
-      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74}};
+      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74},  {"shrubs", 60e3},  {"library", 60e3},
+      {"scaffold", 50e3},  {"cables", 40e3},     {"crowd", 80e3}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }
@@ -267,9 +268,10 @@ TEST(Scenes, TexelsAreTheSameEverywhere) {
 TEST(Scenes, AreTheKnownOnes) {
   std::set<std::string_view> names;
   for (const SceneKind& kind : scene_kinds()) names.insert(kind.name);
-  EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence",
-                                               "soup", "foliage", "bars", "density", "stack", "room", "rigging",
-                                               "leaves", "bumps", "sheets", "tiles"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat",     "pickets", "terrain", "sphere",
+                                               "fence",    "soup",      "foliage",  "bars",    "density", "stack",
+                                               "room",     "rigging",   "leaves",   "bumps",   "sheets",  "tiles",
+                                               "shrubs",   "library",   "scaffold", "cables",  "crowd"}));
 }
 
 TEST(Scenes, DensityFillsThePictureWithItsPixelsPerTriangle) {
@@ -314,7 +316,8 @@ TEST(Scenes, RefusesWhatItCannotMake) {
   EXPECT_EQ(
       refusal("ball", {}),
       "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, bars, "
-      "density, stack, room, rigging, leaves, bumps, sheets, tiles, found \"ball\"");
+      "density, stack, room, rigging, leaves, bumps, sheets, tiles, shrubs, library, scaffold, cables, crowd, found "
+      "\"ball\"");
   EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
   EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");
   EXPECT_EQ(refusal("soup", {.height = 20000}), "expected a width and height of 1..16384, found 320 x 20000");
@@ -350,7 +353,12 @@ TEST(Scenes, DoNotDrawTheBackFacesOfClosedMeshes) {
       {"leaves", {"stems"}},
       {"bumps", {"ball", "left ball", "right ball"}},
       {"sheets", {}},
-      {"tiles", {"boxes"}}};
+      {"tiles", {"boxes"}},
+      {"shrubs", {"stems"}},
+      {"library", {"wood", "books", "lamps"}},
+      {"scaffold", {"bars", "planks", "net"}},
+      {"cables", {"houses", "poles", "cables"}},
+      {"crowd", {"houses", "people"}}};
   for (const SceneKind& kind : scene_kinds()) {
     for (const std::uint32_t triangles : {0u, 1500u}) {
       const Trace trace = make_scene(kind.name, {.triangles = triangles});

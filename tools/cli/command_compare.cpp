@@ -1,5 +1,6 @@
 // beampipe compare: what run does, and how wrong each picture is.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "tools/cli/trace_events.h"
 #include "tools/evaluate/comparison.h"
 #include "tools/evaluate/draw_notes.h"
+#include "tools/evaluate/known_specs.h"
 
 namespace beampipe {
 namespace {
@@ -37,10 +39,22 @@ void tell_unexplained(const std::vector<std::string>& specs) {
               << list_of(specs, "and") << "\n";
 }
 
+constexpr const char* kNoCache = "none";
+
+// Pictures for later comparisons.
+struct KeptPictures {
+  std::string folder;  // empty: the default one
+  bool ladder = false;
+};
+
 void compare(const RunArguments& arguments, const CompareOptions& options, const RecordedPixels& pixels,
-             InterruptGate& gate) {
+             const KeptPictures& kept, InterruptGate& gate) {
   check_pixels_per_degree(options.pixels_per_degree);
   RunPlan plan = make_plan(arguments);
+  const std::filesystem::path folder =
+      kept.folder.empty() ? default_picture_cache() : std::filesystem::path(kept.folder);
+  if (!folder.empty() && folder != kNoCache) plan.pictures = std::make_shared<PictureCache>(folder, plan.trace);
+  plan.keeps_ladder = kept.ladder;
   tell_notes(plan.notes);
   std::vector<std::string> unexplained;
   for (const Technique& technique : plan.techniques)
@@ -84,6 +98,10 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
       .one_of(metric_names())
       .shows_default();
   add_pixels_per_degree(command, options->pixels_per_degree);
+  const auto measures_reference = std::make_shared<bool>(false);
+  command.add_flag("--reference-error", *measures_reference,
+                   std::string("render ") + kSecondReferenceSpec +
+                       " too, report the reference's own error, and widen the ranges of equivalent rates by it");
   command.add_flag(
       "--causes", options->causes,
       "split each pixel's visibility error by cause, as layers of the counters and as a table (beam in every "
@@ -98,8 +116,18 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
            "that `beampipe inspect` can explain)")
       .between(0, 1000);
   command.add("--inspect", pixels->chosen, "X,Y of other pixels to record, in every frame");
+  const auto kept = std::make_shared<KeptPictures>();
+  command.add("--reference-cache", kept->folder,
+              "the folder where pictures of the reference are kept for other runs on the same trace, or none (default: "
+              "$XDG_CACHE_HOME/beampipe/references); at most 4 GiB stay, and only this build reads them");
+  command.add_flag("--keep-ladder", kept->ladder,
+                   "keep pictures of the MSAA ladder there, too: another --metric then needs no rendering of it");
   command.footer(kCompareFooter + technique_help());
-  command.set_work([arguments, options, pixels, &gate] { compare(*arguments, *options, *pixels, gate); });
+  command.set_work([arguments, options, pixels, kept, measures_reference, &gate] {
+    if (*measures_reference && std::ranges::count(arguments->specs, kSecondReferenceSpec) == 0)
+      arguments->specs.emplace_back(kSecondReferenceSpec);
+    compare(*arguments, *options, *pixels, *kept, gate);
+  });
 }
 
 }  // namespace beampipe

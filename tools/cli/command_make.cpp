@@ -66,7 +66,8 @@ Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
 
 void list_scenes() {
   std::vector<std::vector<std::string>> rows;
-  for (const SceneKind& kind : scene_kinds()) rows.push_back({std::string(kind.name), std::string(kind.description)});
+  for (const SceneKind& kind : scene_kinds())
+    rows.push_back({std::string(kind.name), std::string(kind.description) + (kind.is_held_out ? " (held out)" : "")});
   std::cout << align_columns(rows, {0, 1});
 }
 

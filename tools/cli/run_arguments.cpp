@@ -63,6 +63,10 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .required();
   command.add("--frames", arguments.frames,
               "render only frames A-B of the trace, or frame A; the first frame is 0 (default: all)");
+  command
+      .add("--measure-from", arguments.measure_from,
+           "of these, draw the first N only with techniques that keep a history, and measure the others (default: 0)")
+      .between(0, 1000000);
   add_trace_view_options(command, arguments.view);
   command.add("--threads", arguments.threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
@@ -124,6 +128,12 @@ RunPlan make_plan(const RunArguments& arguments) {
     for (const Technique& technique : plan.techniques)
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
                      "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
+  if (arguments.measure_from >= plan.frames.size())
+    throw UsageError("--measure-from " + std::to_string(arguments.measure_from) + ": expected fewer than the " +
+                     std::to_string(plan.frames.size()) + " frames");
+  const auto measured = plan.frames.begin() + static_cast<std::ptrdiff_t>(arguments.measure_from);
+  plan.unmeasured.assign(plan.frames.begin(), measured);
+  plan.frames.erase(plan.frames.begin(), measured);
   plan.textures = std::make_shared<TextureSet>(plan.trace, arguments.trace);
   plan.options.textures = plan.textures.get();
   if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
@@ -131,7 +141,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   std::vector<std::string> with_history;
   for (const Technique& technique : plan.techniques)
     if (technique.keeps_history) with_history.push_back(technique.spec);
-  if (plan.frames.size() == 1)
+  if (plan.frames.size() == 1 && plan.unmeasured.empty())
     for (const std::string& spec : with_history)
       std::cerr << "beampipe: note: " << spec << " works over several frames; the first one has no history\n";
   if (const std::string note = note_on_motion(plan.trace, plan.frames, with_history, arguments.trace); !note.empty())

@@ -24,6 +24,7 @@ struct RunArguments {
   std::string framebuffer;          // empty: as the hardware says
   std::uint64_t on_chip_bytes = 0;  // 0: as the hardware says
   int threads = 0, repeat = 1;
+  std::size_t measure_from = 0;
   bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false, force = false;
 };
 

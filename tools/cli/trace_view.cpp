@@ -22,7 +22,7 @@ void apply_size(const TraceView& view, const std::vector<std::size_t>& frames, c
     const Frame& frame = trace.frames[index];
     const PictureSize size{view.width > 0 ? view.width : in_proportion(view.height, frame.width, frame.height),
                            view.height > 0 ? view.height : in_proportion(view.width, frame.height, frame.width)};
-    resize(trace, {index}, size, name);
+    if (size.width != frame.width || size.height != frame.height) resize(trace, {index}, size, name);
   }
 }
 

@@ -30,6 +30,12 @@ std::optional<double> pooled_flicker(const TechniqueReport& result) {
   return frames > 0 ? std::optional(std::sqrt(squares / frames)) : std::nullopt;
 }
 
+// Two independent references differ by the errors of both.
+std::optional<double> reference_error_of(const std::vector<TechniqueReport>& results) {
+  const auto second = std::ranges::find(results, kSecondReferenceSpec, &TechniqueReport::technique);
+  return second == results.end() ? std::nullopt : std::optional(second->error->rmse / std::sqrt(2.0));
+}
+
 bool has_all_measures(const ErrorStats& stats) {
   return std::ranges::all_of(measures(),
                              [&](const Measure& measure) { return !measure.stored || stats.*measure.stored; });
@@ -54,6 +60,7 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
     errors_.push_back(new_errors());
   }
   reference_result_ = new_technique_report(reference_, {}, kFramesInMemory);
+  blocks_.resize(plan_.techniques.size());
   histories_.resize(plan_.techniques.size());
   last_errors_.resize(plan_.techniques.size());
   causes_.resize(plan_.techniques.size());
@@ -94,7 +101,7 @@ ErrorAccumulator Comparison::new_errors() const {
 
 void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   WallTime reference_time;
-  const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
+  const FrameResult truth = render_kept(reference_, plan_, frame, progress, &reference_time);
   FrameReport reference = write_frame(output_, plan_, maker_, {reference_.spec, frame, truth});
   reference.wall_ms = reference_time;
   reference.error = no_error();
@@ -112,6 +119,7 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
                         {plan_.techniques[i].spec, frame, result, &truth.image, metric_.pixels_per_degree}));
         report.parts = parts;
         errors_[i].add(result.image, truth.image);
+        add_block_squares(result.image, truth.image, blocks_[i]);
         std::vector<float> errors = signed_errors(result.image, truth.image);
         if (errors.size() == last_errors_[i].size()) report.flicker = flicker(last_errors_[i], errors);
         last_errors_[i] = std::move(errors);
@@ -155,6 +163,7 @@ void Comparison::recall_frame(const FrameRecord& record) {
     results_[i].frames.push_back(record.reports[i]);
     const Image image = read_image(record.reports[i]);
     errors_[i].add(image, truth);
+    add_block_squares(image, truth, blocks_[i]);
     last_errors_[i] = signed_errors(image, truth);
   }
   ladder_.set_sums(record.sums.at("ladder"));
@@ -174,9 +183,10 @@ Json Comparison::sums() const {
 Image Comparison::read_image(const FrameReport& frame) const { return read_exr(output_.path() / frame.image); }
 
 // The equivalent rate of technique i of the plan. That of the ladder's own techniques, msaa:N without options, is N.
-EquivalentMsaa Comparison::equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs) const {
+EquivalentMsaa Comparison::equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs,
+                                         std::vector<EmrRange> ranges) const {
   const Technique& technique = plan_.techniques[i];
-  if (!is_rung(technique)) return limited_equivalent_msaa(error, rungs);
+  if (!is_rung(technique)) return limited_equivalent_msaa(error, rungs, std::move(ranges));
   return {static_cast<double>(technique.samples), false, false};
 }
 
@@ -197,33 +207,37 @@ void Comparison::report_parts(Report& report, Progress& progress) {
 // The errors of each technique over all frames. The means over pixels come from the frames' reports.
 void Comparison::pool_errors() {
   for (std::size_t i = 0; i < results_.size(); ++i) {
-    ErrorStats& stats = results_[i].error.emplace(errors_[i].stats());
-    double pixels = 0;
-    for (const FrameReport& frame : results_[i].frames) {
-      const auto frame_pixels = static_cast<double>(frame.pixels);
-      pixels += frame_pixels;
-      for (const Measure& measure : measures())
-        if (measure.stored)
-          stats.*measure.stored = (stats.*measure.stored).value_or(0) +
-                                  pooled_part(measure, *(*frame.error.*measure.stored)) * frame_pixels;
-    }
-    for (const Measure& measure : measures())
-      if (measure.stored) stats.*measure.stored = pooled(measure, *(stats.*measure.stored) / pixels);
+    MeasurePool pool;
+    for (const FrameReport& frame : results_[i].frames) pool.add(*frame.error, frame.pixels);
+    pool.finish(results_[i].error.emplace(errors_[i].stats()));
   }
+}
+
+// What blocks and the reference's error say about the rate of a technique by RMSE; of other metrics they say nothing.
+std::vector<EmrRange> Comparison::ranges_of(const MetricErrors& errors, const MsaaLadder::Rungs& rungs,
+                                            const std::optional<double>& reference_error) const {
+  if (options_.metric != "rmse") return {};
+  std::vector<std::uint32_t> samples;
+  for (const LadderRung& rung : rungs.rmse) samples.push_back(rung.samples);
+  std::vector<EmrRange> ranges = {resampled_range(errors.blocks, samples, rungs.blocks)};
+  if (reference_error) ranges.push_back(range_by_reference(errors.rmse, rungs.rmse, *reference_error));
+  return ranges;
 }
 
 Report Comparison::report(Progress& progress) {
   pool_errors();
   std::vector<MetricErrors> errors;
-  for (const TechniqueReport& result : results_)
-    errors.push_back({result.error->rmse, metric_.measure.error(*result.error)});
+  for (std::size_t i = 0; i < results_.size(); ++i)
+    errors.push_back({results_[i].error->rmse, metric_.measure.error(*results_[i].error), blocks_[i]});
   const auto read_reference = [&](std::size_t frame) {  // frames of a plan follow each other
     return read_image(reference_result_.frames[frame - plan_.frames.front()]);
   };
   const MsaaLadder::Rungs rungs = ladder_.rungs(plan_, errors, read_reference, progress);
+  const std::optional<double> reference_error = reference_error_of(results_);
   for (std::size_t i = 0; i < results_.size(); ++i) {
     TechniqueReport& result = results_[i];
-    result.equivalent_msaa = equivalent_of(i, errors[i].error, rungs.error);
+    result.equivalent_msaa =
+        equivalent_of(i, errors[i].error, rungs.error, ranges_of(errors[i], rungs, reference_error));
     result.causes = causes_[i].shares();
     result.flicker = pooled_flicker(result);
     if (orders_) orders_->report(i, result);
@@ -235,6 +249,7 @@ Report Comparison::report(Progress& progress) {
 
   Report report = new_report(plan_, maker_);
   report.metric = options_.metric;
+  report.reference_error = reference_error;
   report.msaa_ladder = rungs.rmse;
   if (options_.metric != "rmse") report.metric_ladder = rungs.error;
   report.results = results_;

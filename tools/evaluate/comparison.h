@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/evaluate/blocks.h"
 #include "tools/evaluate/diagnosis.h"
 #include "tools/evaluate/error_split.h"
 #include "tools/evaluate/known_specs.h"
@@ -58,8 +59,11 @@ class Comparison {
   Json sums() const;
   Image read_image(const FrameReport& frame) const;
   void pool_errors();
-  EquivalentMsaa equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs) const;
+  EquivalentMsaa equivalent_of(std::size_t i, double error, const std::vector<LadderRung>& rungs,
+                               std::vector<EmrRange> ranges = {}) const;
   void report_parts(Report& report, Progress& progress);
+  std::vector<EmrRange> ranges_of(const MetricErrors& errors, const MsaaLadder::Rungs& rungs,
+                                  const std::optional<double>& reference_error) const;
   Report report(Progress& progress);
 
   CompareOptions options_;
@@ -74,6 +78,7 @@ class Comparison {
   // Each has one entry per technique of the plan.
   std::vector<TechniqueReport> results_;
   std::vector<ErrorAccumulator> errors_;
+  std::vector<BlockSquares> blocks_;
   std::vector<History> histories_;
   std::vector<std::vector<float>> last_errors_;
   std::vector<CauseShares> causes_;

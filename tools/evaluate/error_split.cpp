@@ -65,7 +65,7 @@ void ErrorSplit::go_on_after(std::size_t frames, const RunPlan& plan, Progress& 
 }
 
 void ErrorSplit::start_frame(const RunPlan& plan, std::size_t frame, Progress& progress) {
-  reference_ = render_picture(truth_, plan, frame, progress, kColors);
+  reference_ = kept_picture(truth_, plan, frame, progress, kColors);
   frame_ = frame;
 }
 

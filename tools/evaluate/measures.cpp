@@ -173,6 +173,20 @@ double pooled(const Measure& measure, double average) {
   return measure.pooling == Pooling::squares ? std::sqrt(average) : average;
 }
 
+void MeasurePool::add(const ErrorStats& frame, std::uint64_t pixels) {
+  const auto frame_pixels = static_cast<double>(pixels);
+  pixels_ += frame_pixels;
+  for (const Measure& measure : measures())
+    if (measure.stored)
+      sums_.*measure.stored =
+          (sums_.*measure.stored).value_or(0) + pooled_part(measure, *(frame.*measure.stored)) * frame_pixels;
+}
+
+void MeasurePool::finish(ErrorStats& stats) const {
+  for (const Measure& measure : measures())
+    if (measure.stored) stats.*measure.stored = pooled(measure, *(sums_.*measure.stored) / pixels_);
+}
+
 ErrorStats measure_all(const Image& image, const Image& reference, double pixels_per_degree) {
   ErrorStats stats = measure_error(image, reference);
   for (const Measure& measure : kMeasures)

@@ -50,6 +50,20 @@ const Measure& find_metric(std::string_view key);
 double pooled_part(const Measure& measure, double error);
 double pooled(const Measure& measure, double average);
 
+// Adds up what ErrorAccumulator does not measure, frame by frame.
+class MeasurePool {
+ public:
+  // `frame`: with all measures, of a frame with this many pixels.
+  void add(const ErrorStats& frame, std::uint64_t pixels);
+
+  // Sets these measures as if all frames were one picture.
+  void finish(ErrorStats& stats) const;
+
+ private:
+  ErrorStats sums_;
+  double pixels_ = 0;
+};
+
 // All measures of one picture. Throws as measure_error does.
 ErrorStats measure_all(const Image& image, const Image& reference, double pixels_per_degree = kPixelsPerDegree);
 

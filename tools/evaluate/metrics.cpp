@@ -199,15 +199,54 @@ bool converges(const std::vector<LadderRung>& ladder) {
   return fall > 2 * std::sqrt(2.0) * *deviation;
 }
 
-EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder) {
+EmrRange range_of(const EquivalentMsaa& low, const EquivalentMsaa& high) {
+  return {low.is_upper_bound ? std::nullopt : std::optional(low.samples),
+          high.is_lower_bound ? std::nullopt : std::optional(high.samples)};
+}
+
+namespace {
+
+// The end of the ranges on one side of a rate; none if one of them is open.
+std::optional<double> common_end(double rate, const std::vector<EmrRange>& ranges,
+                                 std::optional<double> EmrRange::*end) {
+  double squares = 0;
+  for (const EmrRange& range : ranges) {
+    if (!(range.*end)) return std::nullopt;
+    const double away = std::log(*(range.*end) / rate);
+    if ((end == &EmrRange::high) == (away > 0)) squares += away * away;
+  }
+  return rate * std::exp((end == &EmrRange::high ? 1 : -1) * std::sqrt(squares));
+}
+
+}  // namespace
+
+EmrRange range_by_reference(double error, const std::vector<LadderRung>& ladder, double reference_error) {
+  const auto without = [&](double measured) {
+    return std::sqrt(std::max(measured * measured - reference_error * reference_error, 0.0));
+  };
+  const EquivalentMsaa found = equivalent_msaa(error, ladder);
+  std::vector<LadderRung> rungs;
+  for (const LadderRung& rung : ladder)
+    if (const double rest = without(rung.error); rest > 0 || rung.error == 0) rungs.push_back({rung.samples, rest});
+  if (rungs.empty()) return {};
+  const EquivalentMsaa moved = equivalent_msaa(without(error), rungs);
+  const double ratio = std::max(moved.samples, found.samples) / std::min(moved.samples, found.samples);
+  EmrRange range{found.samples / ratio, found.samples * ratio};
+  if (found.is_upper_bound) range.low.reset();
+  if (found.is_lower_bound || moved.is_lower_bound) range.high.reset();
+  return range;
+}
+
+EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder,
+                                       std::vector<EmrRange> ranges) {
   EquivalentMsaa emr = equivalent_msaa(error, ladder);
   emr.does_not_converge = emr.is_lower_bound && !converges(ladder);
-  const std::optional<double> deviation = unevenness(ladder);
-  if (!deviation) return emr;
-  const EquivalentMsaa low = equivalent_msaa(error * std::exp(*deviation), ladder);
-  const EquivalentMsaa high = equivalent_msaa(error * std::exp(-*deviation), ladder);
-  if (!low.is_upper_bound && !emr.does_not_converge) emr.low = low.samples;
-  if (!high.is_lower_bound) emr.high = high.samples;
+  if (const std::optional<double> deviation = unevenness(ladder))
+    ranges.push_back(range_of(equivalent_msaa(error * std::exp(*deviation), ladder),
+                              equivalent_msaa(error * std::exp(-*deviation), ladder)));
+  if (ranges.empty()) return emr;
+  if (!emr.does_not_converge) emr.low = common_end(emr.samples, ranges, &EmrRange::low);
+  emr.high = common_end(emr.samples, ranges, &EmrRange::high);
   return emr;
 }
 

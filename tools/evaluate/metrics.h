@@ -87,7 +87,7 @@ struct EquivalentMsaa {
   bool is_upper_bound = false;  // the error is above that of the first rung, whose samples these are
   // What limited_equivalent_msaa() adds. No rate: the error is below that of the last rung, which falls no more.
   bool does_not_converge = false;
-  std::optional<double> low = {}, high = {};  // the rate if the error were larger or smaller by the unevenness
+  std::optional<double> low = {}, high = {};  // about a standard deviation away; none if unknown or off the ladder
   bool operator==(const EquivalentMsaa&) const = default;
 };
 
@@ -106,8 +106,20 @@ std::optional<double> unevenness(const std::vector<LadderRung>& ladder);
 // deviations of the difference between two rungs. A ladder without an unevenness is taken to converge.
 bool converges(const std::vector<LadderRung>& ladder);
 
-// The equivalent rate, and how far the ladder's unevenness leaves it open.
-EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder);
+// Rates about a standard deviation away. None: off the ladder.
+struct EmrRange {
+  std::optional<double> low, high;
+};
+EmrRange range_of(const EquivalentMsaa& low, const EquivalentMsaa& high);
+
+// What the reference's own error leaves open. Its variance is a part of the mean square of every error by RMSE: the
+// range reaches as far, in both directions, as the rate moves without that part.
+EmrRange range_by_reference(double error, const std::vector<LadderRung>& ladder, double reference_error);
+
+// The equivalent rate, and how far the ladder's unevenness and other `ranges` leave it open. What they say is
+// independent of each other: the logarithms of their ranges add up as squares.
+EquivalentMsaa limited_equivalent_msaa(double error, const std::vector<LadderRung>& ladder,
+                                       std::vector<EmrRange> ranges = {});
 
 // The lowest error on the ladder.
 double best_error(const std::vector<LadderRung>& ladder);

@@ -39,7 +39,8 @@ MsaaLadder::MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors,
 void MsaaLadder::add(Rung& rung, const RunPlan& plan, std::size_t frame, const Image& reference,
                      Progress& progress) const {
   if (index_of(rung.technique.spec, plan) < plan.techniques.size()) return;
-  const Image image = render_picture(rung.technique, plan, frame, progress, colors_);
+  const Image image = plan.keeps_ladder ? kept_picture(rung.technique, plan, frame, progress, colors_)
+                                        : render_picture(rung.technique, plan, frame, progress, colors_);
   ErrorStats stats = measure_named_error(rung.technique.spec, frame, image, reference);
   const Measure& measure = metric_.measure;
   if (measure.measure)
@@ -49,16 +50,19 @@ void MsaaLadder::add(Rung& rung, const RunPlan& plan, std::size_t frame, const I
   rung.squares += stats.rmse * stats.rmse * frame_pixels;
   rung.errors += pooled_part(measure, measure.error(stats)) * frame_pixels;
   rung.pixels += frame_pixels;
+  add_block_squares(image, reference, rung.blocks);
 }
 
 void MsaaLadder::measure(const Rung& rung, const RunPlan& plan, const std::vector<MetricErrors>& errors,
                          Rungs& measured) const {
   const std::size_t i = index_of(rung.technique.spec, plan);
-  const MetricErrors of_rung = i < errors.size() ? errors[i]
-                                                 : MetricErrors{std::sqrt(rung.squares / rung.pixels),
-                                                                pooled(metric_.measure, rung.errors / rung.pixels)};
+  const MetricErrors of_rung = i < errors.size()
+                                   ? errors[i]
+                                   : MetricErrors{std::sqrt(rung.squares / rung.pixels),
+                                                  pooled(metric_.measure, rung.errors / rung.pixels), rung.blocks};
   measured.rmse.push_back({rung.technique.samples, of_rung.rmse});
   measured.error.push_back({rung.technique.samples, of_rung.error});
+  measured.blocks.push_back(of_rung.blocks);
 }
 
 void MsaaLadder::add(const RunPlan& plan, std::size_t frame, const Image& reference, Progress& progress) {
@@ -72,7 +76,9 @@ MsaaLadder::Rungs MsaaLadder::rungs(const RunPlan& plan, const std::vector<Metri
   if (!may_grow_) return measured;
   const auto is_beaten = [&] {
     for (std::size_t i = 0; i < errors.size(); ++i)
-      if (!is_rung(plan.techniques[i]) && errors[i].error < best_error(measured.error)) return true;
+      if (const Technique& technique = plan.techniques[i];
+          !is_rung(technique) && !is_reference(technique.spec) && errors[i].error < best_error(measured.error))
+        return true;
     return false;
   };
   for (const std::uint32_t samples : kMoreSamples) {
@@ -86,7 +92,11 @@ MsaaLadder::Rungs MsaaLadder::rungs(const RunPlan& plan, const std::vector<Metri
 
 Json MsaaLadder::sums() const {
   Json sums = Json::array();
-  for (const Rung& rung : rungs_) sums.push_back(Json::array({rung.squares, rung.errors, rung.pixels}));
+  for (const Rung& rung : rungs_) {
+    Json blocks = Json::array();
+    for (const double squares : rung.blocks) blocks.push_back(squares);
+    sums.push_back(Json::array({rung.squares, rung.errors, rung.pixels, std::move(blocks)}));
+  }
   return sums;
 }
 
@@ -95,6 +105,7 @@ void MsaaLadder::set_sums(const Json& sums) {
     rungs_[i].squares = sums.at(i).at(0).get<double>();
     rungs_[i].errors = sums.at(i).at(1).get<double>();
     rungs_[i].pixels = sums.at(i).at(2).get<double>();
+    for (std::size_t k = 0; k < kBlocks; ++k) rungs_[i].blocks[k] = sums.at(i).at(3).at(k).get<double>();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "tools/evaluate/blocks.h"
 #include "tools/evaluate/measures.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/progress.h"
@@ -22,16 +23,17 @@ struct Metric {
   double pixels_per_degree = kPixelsPerDegree;
 };
 
-// The RMSE of a picture, and its error by the metric.
+// The RMSE of a picture, its error by the metric, and its squared errors by block.
 struct MetricErrors {
   double rmse = 0, error = 0;
+  BlockSquares blocks{};
 };
 
 class MsaaLadder {
  public:
   // The rungs are msaa:N for each N in `samples`, in any order, rendered with these colours. If `samples` is empty,
-  // they are 1, 2, 4, ..., 256, and 512 and 1024 if a technique turns out to be better than these by the metric. Throws
-  // SpecError if there is no such rate.
+  // they are 1, 2, 4, ..., 256, and 512 and 1024 if a technique other than a reference turns out to be better than
+  // these by the metric. Throws SpecError if there is no such rate.
   explicit MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors = SurfaceColors::by_place,
                       const Metric& metric = {});
 
@@ -40,6 +42,7 @@ class MsaaLadder {
 
   struct Rungs {
     std::vector<LadderRung> rmse, error;  // errors over all frames: the RMSE, and by the metric
+    std::vector<BlockSquares> blocks;     // of each
   };
 
   // `errors` has those of the plan's techniques, and read_reference(frame) returns the reference's picture of a frame.
@@ -55,6 +58,7 @@ class MsaaLadder {
     Technique technique;
     // Sums over the frames: squared errors per pixel, errors per pixel as the metric pools them, and pixels.
     double squares = 0, errors = 0, pixels = 0;
+    BlockSquares blocks{};
 
     explicit Rung(std::uint32_t samples);
   };

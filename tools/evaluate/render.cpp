@@ -40,14 +40,25 @@ TimedResult render_timed(const RunPlan& plan, const Rendering& run, Progress& pr
   options.memory.modelled = run.models_memory;
   options.colors = run.colors;
   const std::string name = run.technique.spec + (run.colors == SurfaceColors::by_pixel ? ", for visibility" : "");
-  progress.show(frame_text(plan, run.frame) + name);
+  FrameSinks sinks = plan.sinks;
+  sinks.completion = &progress.show(frame_text(plan, run.frame) + name);
   const auto start = std::chrono::steady_clock::now();
-  FrameResult result = run.technique.render(plan.trace, run.frame, options, plan.sinks);
+  FrameResult result = run.technique.render(plan.trace, run.frame, options, sinks);
   const auto end = std::chrono::steady_clock::now();
   if (plan.sinks.timeline)
     plan.sinks.timeline->add(
         {name + ", frame " + std::to_string(run.frame), std::this_thread::get_id(), {}, start, end});
   return {std::move(result), std::chrono::duration<double, std::milli>(end - start).count()};
+}
+
+// What a report has of a result, without pictures and counters of pixels.
+void add_counters(const FrameResult& result, FrameReport& report) {
+  report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
+  report.buffers = result.buffers;
+  report.stages = result.stages;
+  report.bin_pixels = result.bin_pixels;
+  report.bin_operations = result.bin_operations;
+  report.bin_invocations = result.bin_invocations;
 }
 
 FrameContent content_of(const Trace& trace, std::size_t index) {
@@ -95,8 +106,10 @@ std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, 
   std::vector<History> histories(plan.techniques.size());
   for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
     if (!plan.techniques[i].keeps_history) continue;
-    for (std::size_t at = 0; at < frames; ++at)
-      render_picture(plan.techniques[i], plan, plan.frames[at], progress, colors, &histories[i]);
+    std::vector<std::size_t> earlier = plan.unmeasured;
+    earlier.insert(earlier.end(), plan.frames.begin(), plan.frames.begin() + static_cast<std::ptrdiff_t>(frames));
+    for (const std::size_t frame : earlier)
+      render_picture(plan.techniques[i], plan, frame, progress, colors, &histories[i]);
   }
   return histories;
 }
@@ -110,6 +123,46 @@ FrameResult render_once(const Technique& technique, const RunPlan& plan, std::si
     time->with_memory_model = model;
   }
   return std::move(timed.result);
+}
+
+namespace {
+
+KeptPicture kept_or_rendered(const Rendering& run, const RunPlan& plan, Progress& progress) {
+  const std::string& spec = run.technique.spec;
+  if (plan.pictures)
+    if (std::optional<KeptPicture> found = plan.pictures->find(spec, run.frame, run.colors)) return std::move(*found);
+  TimedResult timed = render_timed(plan, run, progress);
+  KeptPicture rendered{std::move(timed.result.image), {}};
+  FrameReport& report = rendered.report;
+  report.index = run.frame;
+  report.wall_ms = wall_time({timed.milliseconds});
+  report.wall_ms.with_memory_model = run.models_memory;
+  add_counters(timed.result, report);
+  report.pixels = std::uint64_t{rendered.image.width} * rendered.image.height;
+  if (plan.pictures) plan.pictures->keep(spec, run.frame, run.colors, rendered);
+  return rendered;
+}
+
+}  // namespace
+
+FrameResult render_kept(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                        WallTime* time) {
+  KeptPicture kept = kept_or_rendered(
+      {.technique = technique, .frame = frame, .models_memory = plan.options.memory.modelled}, plan, progress);
+  if (time) *time = kept.report.wall_ms;
+  FrameResult result;
+  result.image = std::move(kept.image);
+  result.stages = std::move(kept.report.stages);
+  result.a_buffer_peak_bytes = kept.report.a_buffer_peak_bytes;
+  result.buffers = std::move(kept.report.buffers);
+  result.bin_pixels = static_cast<std::uint32_t>(kept.report.bin_pixels);
+  result.bin_operations = std::move(kept.report.bin_operations);
+  return result;
+}
+
+Image kept_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                   SurfaceColors colors) {
+  return kept_or_rendered({.technique = technique, .frame = frame, .colors = colors}, plan, progress).image;
 }
 
 Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
@@ -139,13 +192,8 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   report.index = index;
   report.image = stem + ".exr";
   report.picture = stem + ".png";
-  report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
-  report.buffers = result.buffers;
-  report.stages = result.stages;
+  add_counters(result, report);
   report.pixels = std::uint64_t{result.image.width} * result.image.height;
-  report.bin_pixels = result.bin_pixels;
-  report.bin_operations = result.bin_operations;
-  report.bin_invocations = result.bin_invocations;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = on_threads(plan.options.threads, [&] {

@@ -25,13 +25,21 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
                                    std::vector<History>& histories,
                                    const std::function<void(std::size_t technique, FrameResult&&)>& use);
 
-// The histories after the plan's first `frames` frames. Renders those frames again with the techniques that keep one.
+// The histories after the plan's unmeasured frames and the first `frames` ones. Renders those frames with the
+// techniques that keep one.
 std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress,
                                        SurfaceColors colors = SurfaceColors::by_place);
 
 // Renders a frame once with one technique. If `time` is not null, it becomes the time that this took.
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
+
+// The same, from the plan's kept pictures if it is there; otherwise it is kept. Of a technique without history and
+// without pixel counters. The time is that of the rendering.
+FrameResult render_kept(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                        WallTime* time = nullptr);
+Image kept_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                   SurfaceColors colors = SurfaceColors::by_place);
 
 // Renders only a picture, without modelling memory. `history` is as in FrameInput.
 Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,

@@ -62,6 +62,7 @@ struct Report {
   Hardware hardware = {};  // whose times are modelled; nothing is modelled if it has no implementations
   std::vector<TechniqueReport> results = {};
   std::string metric = {};                         // what equivalent rates compare; empty if they are not measured
+  std::optional<double> reference_error = {};      // its RMSE, if it was measured
   std::vector<LadderRung> msaa_ladder = {};        // RMSE; empty if not measured
   std::vector<LadderRung> metric_ladder = {};      // errors by the metric; empty if that is the RMSE
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat

@@ -89,6 +89,12 @@ Form<Maker> maker_form() {
           "frames", [](const Maker& maker) { return range_text(maker.plan.frames); }, text,
           "The first and the last frame, with \"-\" between them.")
       .written(
+          "unmeasured_frames",
+          [](const Maker& maker) {
+            return maker.plan.unmeasured.empty() ? std::nullopt : std::optional(range_text(maker.plan.unmeasured));
+          },
+          text, "Those that were drawn before them and not measured, likewise.")
+      .written(
           "repeat", [](const Maker& maker) { return maker.plan.repeat; }, form::count(1), "Timed runs of each frame.")
       .written(
           "threads", [](const Maker& maker) { return maker.plan.options.threads; }, form::count(1),

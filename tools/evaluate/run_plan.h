@@ -9,6 +9,7 @@
 #include "pipeline/technique.h"
 #include "stages/geometry/draw_notes.h"
 #include "tools/evaluate/hardware.h"
+#include "tools/evaluate/picture_cache.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -17,14 +18,17 @@ struct RunPlan {
   std::string trace_file;  // as the user named it
   Trace trace;
   std::vector<Technique> techniques;
-  std::vector<std::size_t> frames;  // indices into the trace, rising
+  std::vector<std::size_t> frames;      // indices into the trace, rising
+  std::vector<std::size_t> unmeasured;  // those before them, which only techniques with a history render
   int repeat = 1;
   Hardware hardware = titan_v();
   std::string shading_options;                 // as on the command line, with a blank before each
   std::shared_ptr<const TextureSet> textures;  // of the trace
   FrameInput options;                          // `threads` is the actual number, never 0
   FrameSinks sinks;
-  std::vector<DrawNote> notes;  // of `frames`
+  std::vector<DrawNote> notes;                   // of `frames`
+  std::shared_ptr<const PictureCache> pictures;  // of the reference; null: none are kept
+  bool keeps_ladder = false;                     // are those of the MSAA ladder kept there, too?
 };
 
 inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {

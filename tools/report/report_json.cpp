@@ -38,9 +38,11 @@ void add_rate(ObjectForm<T>& object, Place rate) {
                part([](const Emr& emr) { return emr.is_upper_bound ? std::optional(true) : std::nullopt; }),
                form::boolean(), "The rate is at most that: the first rung of the ladder is better.")
       .written("equivalent_msaa_low", part([](const Emr& emr) { return emr.low; }), form::amount(),
-               "The rate if the error were larger by the unevenness of the MSAA ladder.")
+               "The lower end of the rate's range, about a standard deviation away: by the unevenness of the MSAA "
+               "ladder, and, of all errors by RMSE, by blocks of pixels drawn again and the reference's own error, if "
+               "that was measured.")
       .written("equivalent_msaa_high", part([](const Emr& emr) { return emr.high; }), form::amount(),
-               "The rate if the error were smaller by that.")
+               "The upper end of that range; missing where it leaves the ladder.")
       .written("equivalent_msaa_does_not_converge",
                part([](const Emr& emr) { return emr.does_not_converge ? std::optional(true) : std::nullopt; }),
                form::boolean(), "There is no rate: the error is below that of the last rung, which falls no more.");
@@ -200,6 +202,9 @@ ObjectForm<Report> head_form() {
                "What each rendered frame asks to be drawn.")
       .written("metric", form::filled(&Report::metric), form::one_of(metric_names()),
                "The measure that equivalent rates compare.")
+      .written("reference_error", &Report::reference_error, form::amount(),
+               "After --reference-error: RMSE of the reference itself, which is that between two independent ones over "
+               "the root of 2.")
       .written("msaa_ladder", form::filled(&Report::msaa_ladder), ladder_form(),
                "Errors of msaa:N, between which equivalent rates are interpolated if the metric is RMSE.")
       .written("metric_msaa_ladder", form::filled(&Report::metric_ladder),

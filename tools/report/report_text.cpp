@@ -12,7 +12,7 @@ namespace {
 
 const std::set<std::string> kInFirstTable = {"rmse", "bias", "p99", "max"};
 
-// What the unevenness of the ladder leaves open.
+// From the lower to the upper end.
 std::string range_text(const EquivalentMsaa& emr) {
   const auto text = [](const std::optional<double>& rate) { return rate ? emr_text({*rate, false, false}) : ""; };
   return emr.low || emr.high ? text(emr.low) + ".." + text(emr.high) : "";
@@ -100,7 +100,9 @@ std::string measures_text(const Report& report) {
       rows.back().push_back(value ? number_text(measure.key, *value) : "");
     }
   }
-  return "\n" + align_columns(rows, {0});
+  std::string text = "\n" + align_columns(rows, {0});
+  if (report.reference_error) text += "RMSE of the reference itself: " + format("%.6f", *report.reference_error) + "\n";
+  return text;
 }
 
 std::string causes_text(const Report& report) {

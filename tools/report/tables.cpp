@@ -55,11 +55,12 @@ const std::vector<Source> kTechniqueColumns = {
       kAccuracy},
      "/emr_bound"},
     {{"emr_low", "EMR from", "samples per pixel",
-      "EMR if the error were larger by the unevenness of the MSAA ladder: how far its errors lie off a smooth curve.",
+      "The lower end of the range of the EMR, about a standard deviation away: by the unevenness of the MSAA ladder, "
+      "by "
+      "blocks of pixels drawn again, and by the reference's own error, if that was measured.",
       kAccuracy},
      "/equivalent_msaa_low"},
-    {{"emr_high", "EMR to", "samples per pixel", "EMR if the error were smaller by that.", kAccuracy},
-     "/equivalent_msaa_high"},
+    {{"emr_high", "EMR to", "samples per pixel", "The upper end of that range.", kAccuracy}, "/equivalent_msaa_high"},
     {{"visibility_rmse", "visibility", "linear light, 0..1",
       "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a "
       "triangle "

@@ -4,8 +4,11 @@
 #include <map>
 #include <tuple>
 
+#include "pipeline/bins/threads.h"
 #include "pipeline/technique.h"
+#include "tools/evaluate/blocks.h"
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/progress.h"
@@ -85,6 +88,8 @@ struct VariantPictures {
   Technique technique;
   MemoryParameters memory;
   ErrorAccumulator errors;
+  MeasurePool measures = {};
+  BlockSquares blocks = {};
   History history = {};
 };
 
@@ -115,7 +120,11 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
     for (VariantPictures& each : pictures) {
       FrameInput options = options_of(*loaded, each.memory, limits);
       options.history = &each.history;
-      each.errors.add(each.technique.render(loaded->trace, frame, options).image, truth);
+      const Image image = each.technique.render(loaded->trace, frame, options).image;
+      each.errors.add(image, truth);
+      each.measures.add(on_threads(limits.threads, [&] { return measure_all(image, truth); }),
+                        std::uint64_t{image.width} * image.height);
+      add_block_squares(image, truth, each.blocks);
     }
   }
 
@@ -125,19 +134,20 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
     if (is_rung(each.technique)) continue;
     ladder_plan.techniques.push_back(each.technique);
     const double rmse = each.errors.stats().rmse;
-    measured.push_back({rmse, rmse});
+    measured.push_back({rmse, rmse, each.blocks});
   }
-  const std::vector<LadderRung> rungs =
-      ladder
-          .rungs(
-              ladder_plan, measured, [&](std::size_t frame) { return references.at(frame); }, silent)
-          .rmse;
+  const MsaaLadder::Rungs rungs = ladder.rungs(
+      ladder_plan, measured, [&](std::size_t frame) { return references.at(frame); }, silent);
+  std::vector<std::uint32_t> samples;
+  for (const LadderRung& rung : rungs.rmse) samples.push_back(rung.samples);
   std::vector<PictureErrors> errors;
   for (const VariantPictures& each : pictures) {
-    const ErrorStats stats = each.errors.stats();
+    ErrorStats stats = each.errors.stats();
+    each.measures.finish(stats);
     errors.push_back({stats, is_rung(each.technique)
                                  ? EquivalentMsaa{static_cast<double>(each.technique.samples), false, false}
-                                 : equivalent_msaa(stats.rmse, rungs)});
+                                 : limited_equivalent_msaa(stats.rmse, rungs.rmse,
+                                                           {resampled_range(each.blocks, samples, rungs.blocks)})});
   }
   results.write(job.trace, job.size, errors);
 }

@@ -31,16 +31,25 @@ CountedCell counts_of(const Json& json, const Technique& technique, const Memory
 
 Json to_json(const PictureErrors& errors) {
   const EquivalentMsaa& emr = errors.equivalent_msaa;
-  return {{"error", error_form().write(errors.error)},
-          {"equivalent_msaa", emr.samples},
-          {"is_lower_bound", emr.is_lower_bound},
-          {"is_upper_bound", emr.is_upper_bound}};
+  Json json = {{"error", error_form().write(errors.error)},
+               {"equivalent_msaa", emr.samples},
+               {"is_lower_bound", emr.is_lower_bound},
+               {"is_upper_bound", emr.is_upper_bound},
+               {"does_not_converge", emr.does_not_converge}};
+  if (emr.low) json["low"] = *emr.low;
+  if (emr.high) json["high"] = *emr.high;
+  return json;
 }
 
 PictureErrors errors_of(const Json& json) {
-  return {error_of(json.at("error")),
-          {json.at("equivalent_msaa").get<double>(), json.at("is_lower_bound").get<bool>(),
-           json.at("is_upper_bound").get<bool>()}};
+  const auto number = [&](const char* key) {
+    const Json* const found = json.find(key);
+    return found ? std::optional(found->get<double>()) : std::nullopt;
+  };
+  return {
+      error_of(json.at("error")),
+      {json.at("equivalent_msaa").get<double>(), json.at("is_lower_bound").get<bool>(),
+       json.at("is_upper_bound").get<bool>(), json.at("does_not_converge").get<bool>(), number("low"), number("high")}};
 }
 
 }  // namespace

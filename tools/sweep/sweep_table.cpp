@@ -6,6 +6,7 @@
 
 #include "tools/evaluate/energy.h"
 #include "tools/evaluate/mean_time.h"
+#include "tools/evaluate/measures.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/files/csv.h"
 
@@ -34,6 +35,8 @@ Json mean_of(const Cell& cell, Count&& count) {
   const std::size_t frames = std::max<std::size_t>(cell.report.frames.size(), 1);
   return sum % frames == 0 ? Json(sum / frames) : Json(static_cast<double>(sum) / static_cast<double>(frames));
 }
+
+Json number_or_none(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 struct Column {
   SweepColumn info;
@@ -84,17 +87,28 @@ std::vector<Column> cell_columns() {
                          });
                        }});
   }
-  columns.push_back({{"rmse", "", "error against the reference: root mean square of linear RGB; only with errors"},
-                     [](const Cell& c) { return c.errors ? Json(c.errors->error.rmse) : Json(); }});
-  columns.push_back({{"bias", "", "mean of the picture minus that of the reference; only with errors"},
-                     [](const Cell& c) { return c.errors ? Json(c.errors->error.bias) : Json(); }});
-  columns.push_back({{"emr", "samples", "equivalent MSAA rate; only with errors"},
-                     [](const Cell& c) { return c.errors ? Json(c.errors->equivalent_msaa.samples) : Json(); }});
-  columns.push_back({{"emr_bound", "", "lower or upper if that rate is only a bound", true}, [](const Cell& c) {
-                       if (!c.errors) return Json();
-                       const EquivalentMsaa& emr = c.errors->equivalent_msaa;
-                       return Json(emr.is_lower_bound ? "lower" : emr.is_upper_bound ? "upper" : "");
-                     }});
+  for (const Measure& measure : measures())
+    columns.push_back(
+        {{measure.key, measure.unit, std::string(measure.meaning) + " Only with errors."}, [&measure](const Cell& c) {
+           return number_or_none(c.errors ? measure.value(c.errors->error) : std::nullopt);
+         }});
+  const auto rate_column = [&](const char* name, const char* meaning, auto value) {
+    columns.push_back({{name, "samples", meaning}, [value](const Cell& c) {
+                         return number_or_none(c.errors ? value(c.errors->equivalent_msaa) : std::nullopt);
+                       }});
+  };
+  rate_column("emr", "equivalent MSAA rate; only with errors", [](const EquivalentMsaa& emr) {
+    return emr.does_not_converge ? std::nullopt : std::optional(emr.samples);
+  });
+  rate_column("emr_low", "lower end of its range", [](const EquivalentMsaa& emr) { return emr.low; });
+  rate_column("emr_high", "upper end of its range", [](const EquivalentMsaa& emr) { return emr.high; });
+  columns.push_back(
+      {{"emr_bound", "", "lower or upper if that rate is only a bound; none if MSAA does not converge", true},
+       [](const Cell& c) {
+         if (!c.errors) return Json();
+         const EquivalentMsaa& emr = c.errors->equivalent_msaa;
+         return Json(emr.does_not_converge ? "none" : emr.is_lower_bound ? "lower" : emr.is_upper_bound ? "upper" : "");
+       }});
   return columns;
 }
 

@@ -59,5 +59,10 @@ Trace make_leaves(const SceneOptions& options);
 Trace make_bumps(const SceneOptions& options);
 Trace make_sheets(const SceneOptions& options);
 Trace make_tiles(const SceneOptions& options);
+Trace make_shrubs(const SceneOptions& options);
+Trace make_library(const SceneOptions& options);
+Trace make_scaffold(const SceneOptions& options);
+Trace make_cables(const SceneOptions& options);
+Trace make_crowd(const SceneOptions& options);
 
 }  // namespace beampipe

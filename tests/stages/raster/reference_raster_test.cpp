@@ -1,5 +1,8 @@
 #include "stages/raster/reference_raster.h"
 
+#include <cmath>
+#include <set>
+
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe::reference_raster_test {
@@ -67,6 +70,67 @@ TEST(ReferenceRaster, FansCoverEverySample) {
   EXPECT_EQ(counters.items_out, counters.lanes_used);
   // Per sample, 2 products and 3 sums for the depth, and one comparison. Finding the spans is not charged.
   EXPECT_EQ(counters.ops, (OperationCounts{.mul_add = 2, .add = 4} * counters.lanes_used));
+}
+
+// Each column of 1 / (number of samples) px has one sample, and each row of samples has its own part of the height.
+TEST(ReferencePatterns, HaveASampleInEveryColumn) {
+  for (const std::int32_t columns : {16, 32})
+    for (int set = 1; set <= 4; ++set) {
+      const ReferencePattern pattern{columns, set};
+      std::set<std::int64_t> taken;
+      for (std::int64_t row = 0; row < pattern.rows(); ++row) {
+        const auto [x, y] = pattern.first_in_row(row);
+        EXPECT_EQ(y * pattern.rows() / pattern.units(), row);
+        EXPECT_NE(y % (pattern.units() / pattern.rows()), 0) << "on the border of two rows, where vertices lie";
+        for (std::int32_t i = 0; i < columns; ++i) taken.insert((x + i * pattern.units() / columns) / 2);
+        EXPECT_EQ(x % 2, 1);
+      }
+      EXPECT_EQ(taken.size(), static_cast<std::size_t>(pattern.samples()));
+      EXPECT_EQ(*taken.rbegin(), pattern.samples() - 1);
+    }
+}
+
+// The error of a half-plane's area, of many of them, for a pattern: in units of the pixel.
+std::vector<double> errors_of_areas(const ReferencePattern& pattern) {
+  Random random(122);
+  const Tile tile{0, 0, 1, 1};
+  std::vector<double> errors;
+  for (int i = 0; i < 400; ++i) {
+    // A parallelogram whose sides cut the upper and the lower border of the pixel: its area is that of a trapezoid.
+    const std::int32_t top = random.int32(20, 236), bottom = random.int32(20, 236);
+    SetupTriangles triangles;
+    add_triangle(triangles, {-1000, 0, -0.5f}, {top, 0, -0.5f}, {bottom, 256, -0.5f});
+    add_triangle(triangles, {-1000, 0, -0.5f}, {bottom, 256, -0.5f}, {-1000, 256, -0.5f});
+    ReferenceTile surface(tile, pattern);
+    StageCounters counters;
+    reference_raster(triangles, all_of(triangles), tile, counters, surface);
+    const auto outside = std::count(surface.owner.begin(), surface.owner.end(), kNoOwner);
+    errors.push_back(1 - static_cast<double>(outside) / pattern.samples() - (top + bottom) / 512.0);
+  }
+  return errors;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) ab += a[i] * b[i], aa += a[i] * a[i], bb += b[i] * b[i];
+  return ab / std::sqrt(aa * bb);
+}
+
+// So that the difference of two pictures tells the error of one.
+TEST(ReferencePatterns, ErrIndependently) {
+  std::vector<std::vector<double>> errors;
+  for (int set = 1; set <= 4; ++set) errors.push_back(errors_of_areas({16, set}));
+  for (std::size_t a = 0; a < errors.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR(correlation(errors[a], errors[b]), 0, 0.3) << a << " " << b;
+}
+
+TEST(ReferencePatterns, MoreSamplesErrLess) {
+  const auto square = [](const std::vector<double>& errors) {
+    double sum = 0;
+    for (const double error : errors) sum += error * error;
+    return sum;
+  };
+  EXPECT_LT(4 * square(errors_of_areas({32, 1})), square(errors_of_areas({16, 1})));
 }
 
 TEST(ReferenceRaster, ResolveIsTheMeanOfTheSamples) {

@@ -162,6 +162,33 @@ TEST(EquivalentMsaa, IsOpenByTheUnevennessOfTheLadder) {
   EXPECT_FALSE(limited_equivalent_msaa(0.026, ladder).high) << "better than the ladder";
 }
 
+TEST(EquivalentMsaa, IndependentRangesAddUpAsSquares) {
+  const std::vector<LadderRung> ladder = {{1, 0.4}, {4, 0.1}, {16, 0.025}};
+  const EmrRange narrow{4 / std::exp(0.3), 4 * std::exp(0.5)}, wide{4 / std::exp(0.4), 4 * std::exp(1.2)};
+  const EquivalentMsaa emr = limited_equivalent_msaa(0.1, ladder, {narrow, wide});
+  EXPECT_EQ(emr.samples, 4);
+  EXPECT_NEAR(emr.low.value(), 4 / std::exp(0.5), 1e-9);
+  EXPECT_NEAR(emr.high.value(), 4 * std::exp(1.3), 1e-9);
+  EXPECT_FALSE(limited_equivalent_msaa(0.1, ladder, {narrow, {{}, 8}}).low) << "one is open";
+}
+
+TEST(EquivalentMsaa, IsOpenByTheErrorOfTheReference) {
+  // Errors 0.4 / N and that of the reference, 0.03, add up as squares. Without it, the technique has the rate 4.
+  const double of_reference = 0.03;
+  const auto measured = [&](double error) { return std::hypot(error, of_reference); };
+  const std::vector<LadderRung> ladder = {{1, measured(0.4)}, {4, measured(0.1)}, {16, measured(0.025)}};
+  const EmrRange at_rung = range_by_reference(measured(0.1), ladder, of_reference);
+  EXPECT_NEAR(at_rung.low.value(), 4, 1e-9);
+  EXPECT_NEAR(at_rung.high.value(), 4, 1e-9);
+  const double rate = equivalent_msaa(measured(0.05), ladder).samples, truth = 8;
+  ASSERT_GT(rate, 8.1);
+  const EmrRange between = range_by_reference(measured(0.05), ladder, of_reference);
+  EXPECT_NEAR(between.low.value(), truth, 1e-9);
+  EXPECT_NEAR(between.high.value(), rate * rate / truth, 1e-9);
+  EXPECT_FALSE(range_by_reference(of_reference, ladder, of_reference).high) << "nothing is known to be left";
+  EXPECT_FALSE(range_by_reference(measured(0.5), ladder, of_reference).low) << "worse than the ladder";
+}
+
 TEST(EquivalentMsaa, DoesNotConvergeWhereTheLadderFallsNoMore) {
   const std::vector<LadderRung> flat = {{1, 0.4}, {2, 0.2}, {4, 0.1}, {8, 0.11}, {16, 0.1}, {32, 0.105}};
   EXPECT_FALSE(converges(flat));
