@@ -2,6 +2,7 @@
 // few also use a technique's own header, such as pipeline/techniques/msaa.h.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -42,6 +43,12 @@ struct FrameInput {
   SurfaceColors colors = SurfaceColors::by_place;
   // If not null, only the bins that hold one of these pixels are rendered; the rest of the picture is black.
   const std::vector<PixelAddress>* pixels = nullptr;
+  // If not null, it is read before every bin, from any thread; once it is true, `render` throws Cancelled.
+  const std::atomic<bool>* cancelled = nullptr;
+};
+
+struct Cancelled : std::runtime_error {
+  Cancelled() : std::runtime_error("rendering was cancelled") {}
 };
 
 // Where to collect what a result does not have; null: nowhere. It changes nothing that is rendered or counted.
