@@ -180,7 +180,7 @@ ErrorStats measure_all(const Image& image, const Image& reference, double pixels
   return stats;
 }
 
-ErrorStats measure_frames(std::span<const PicturePair> frames, double pixels_per_degree) {
+ErrorStats measure_frames(std::span<const PicturePair> frames, double pixels_per_degree, const Measure* only) {
   const auto pixels_of = [](const PicturePair& frame) {
     return std::uint64_t{frame.reference.width} * frame.reference.height;
   };
@@ -190,7 +190,7 @@ ErrorStats measure_frames(std::span<const PicturePair> frames, double pixels_per
   for (const PicturePair& frame : frames) errors.add(frame.image, frame.reference);
   ErrorStats stats = errors.stats();
   for (const Measure& measure : kMeasures) {
-    if (!measure.measure) continue;
+    if (!measure.measure || (only && only != &measure)) continue;
     double sum = 0;
     for (const PicturePair& frame : frames) {
       ErrorStats of_frame;

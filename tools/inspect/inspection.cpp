@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "pipeline/spec.h"
+#include "pipeline/technique_table.h"
 #include "stages/geometry/vertex_setup.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/metrics.h"

@@ -29,19 +29,24 @@ const Measure& find_measure(const std::string& key) {
   throw std::runtime_error("no measure is called " + key);
 }
 
-// The measures that have a value, and what equivalent rates compare: two dictionaries by key.
+// The measures that have a value, and what equivalent rates compare: two dictionaries by key. `key` chooses one of those
+// that take long; if it is empty, all are measured.
 py::tuple measure(const std::vector<FloatArray>& pictures, const std::vector<FloatArray>& references,
-                  double pixels_per_degree) {
+                  double pixels_per_degree, const std::string& key) {
   check_pixels_per_degree(pixels_per_degree);
   const std::vector<Image> images = images_of(pictures, "image"), truths = images_of(references, "reference");
+  const Measure* const only = key.empty() ? nullptr : key == "psnr" ? &find_metric(key) : &find_measure(key);
   std::vector<PicturePair> pairs;
   for (std::size_t i = 0; i < images.size(); ++i) pairs.push_back({images[i], truths.at(i)});
   const ErrorStats stats =
-      interruptible([&](const std::atomic<bool>&) { return measure_frames(pairs, pixels_per_degree); });
+      interruptible([&](const std::atomic<bool>&) { return measure_frames(pairs, pixels_per_degree, only); });
   py::dict values, errors;
   for (const Measure& each : measures())
     if (const std::optional<double> value = each.value(stats)) values[each.key] = *value;
-  for (const std::string& key : metric_names()) errors[key.c_str()] = find_metric(key).error(stats);
+  for (const std::string& name : metric_names()) {
+    const Measure& metric = find_metric(name);
+    if (!metric.stored || stats.*metric.stored) errors[name.c_str()] = metric.error(stats);
+  }
   return py::make_tuple(values, errors);
 }
 

@@ -17,14 +17,6 @@ namespace {
 
 namespace py = pybind11;
 
-const Frame& frame_of(const TraceHandle& trace, std::size_t frame) {
-  const std::vector<Frame>& frames = trace.trace().frames;
-  if (frame >= frames.size())
-    throw std::runtime_error(trace.name() + ": expected a frame from 0 to " + std::to_string(frames.size() - 1) +
-                             ", found " + std::to_string(frame));
-  return frames[frame];
-}
-
 FrameInput input_of(const TraceHandle& trace, std::size_t frame, const Technique& technique, int threads) {
   if (threads < 0 || threads > 1024)
     throw std::runtime_error("threads: expected 1 to 1024, or 0 for one per core, found " + std::to_string(threads));

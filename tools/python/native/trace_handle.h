@@ -32,4 +32,7 @@ class TraceHandle {
   std::string name_;
 };
 
+// Throws std::runtime_error, one line, if there is no such frame.
+const Frame& frame_of(const TraceHandle& trace, std::size_t frame);
+
 }  // namespace beampipe

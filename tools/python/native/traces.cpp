@@ -24,6 +24,14 @@ TraceHandle TraceHandle::resized(const PictureSize& size) const {
   return {std::move(changed), name_};
 }
 
+const Frame& frame_of(const TraceHandle& trace, std::size_t frame) {
+  const std::vector<Frame>& frames = trace.trace().frames;
+  if (frame >= frames.size())
+    throw std::runtime_error(trace.name() + ": expected a frame from 0 to " + std::to_string(frames.size() - 1) +
+                             ", found " + std::to_string(frame));
+  return frames[frame];
+}
+
 namespace {
 
 namespace py = pybind11;
@@ -54,7 +62,9 @@ std::vector<glm::vec3> colors_of(const FloatArray& array, const char* name) {
 }
 
 Mesh mesh_of(const FloatArray& positions, const IndexArray& triangles, const FloatArray& colors) {
-  Mesh mesh{.name = "mesh", .positions = rows_of<glm::vec3>(positions, "positions")};
+  Mesh mesh;
+  mesh.name = "mesh";
+  mesh.positions = rows_of<glm::vec3>(positions, "positions");
   const auto is_finite = [](const glm::vec3& at) {
     return std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z);
   };
@@ -77,7 +87,11 @@ Frame new_frame(const PictureSize& size, const FloatArray& background) {
   if (background.ndim() != 1 || background.size() != 3) fail("background: expected linear RGB, three numbers");
   const glm::vec3 color{background.data()[0], background.data()[1], background.data()[2]};
   if (!is_color(color)) fail("background: expected linear RGB from 0 to 65504");
-  return {.width = size.width, .height = size.height, .background = color, .draws = {Draw{}}};
+  Frame frame;
+  frame.width = size.width, frame.height = size.height;
+  frame.background = color;
+  frame.draws.emplace_back();
+  return frame;
 }
 
 void check(const Camera& camera) {
@@ -120,26 +134,41 @@ TraceHandle make(const std::string& scene, const SceneOptions& options, std::uin
 }  // namespace
 
 void add_traces(py::module_& module) {
-  py::class_<TraceHandle>(module, "Trace")
-      .def_property_readonly("name", &TraceHandle::name)
-      .def_property_readonly("frames", [](const TraceHandle& self) { return self.trace().frames.size(); })
-      .def_property_readonly("triangles",
-                             [](const TraceHandle& self) {
-                               std::size_t triangles = 0;
-                               for (const Mesh& mesh : self.trace().meshes) triangles += mesh.triangles.size();
-                               return triangles;
-                             })
-      .def("size",
-           [](const TraceHandle& self, std::size_t frame) {
-             const Frame& of = self.trace().frames.at(frame);
-             return py::make_tuple(of.width, of.height);
-           })
-      .def("resized", [](const TraceHandle& self, std::uint32_t width, std::uint32_t height) {
-        return self.resized({width, height});
-      })
-      .def("save", [](const TraceHandle& self, const std::filesystem::path& file, bool binary) {
-        write_trace(self.trace(), file, binary ? ArrayStorage::binary : ArrayStorage::text);
-      });
+  py::class_<TraceHandle>(
+      module, "Trace",
+      "A recorded draw stream: frames of triangles. make(), open_trace() and trace_from_arrays() give one.")
+      .def_property_readonly("name", &TraceHandle::name, "Its file or scene, as errors name it.")
+      .def_property_readonly(
+          "frames", [](const TraceHandle& self) { return self.trace().frames.size(); }, "The number of frames.")
+      .def_property_readonly(
+          "triangles",
+          [](const TraceHandle& self) {
+            std::size_t triangles = 0;
+            for (const Mesh& mesh : self.trace().meshes) triangles += mesh.triangles.size();
+            return triangles;
+          },
+          "The number of triangles in all meshes.")
+      .def(
+          "size",
+          [](const TraceHandle& self, std::size_t frame) {
+            const Frame& of = frame_of(self, frame);
+            return py::make_tuple(of.width, of.height);
+          },
+          py::arg("frame") = 0, "(width, height) of a frame, in pixels.")
+      .def(
+          "resized",
+          [](const TraceHandle& self, std::uint32_t width, std::uint32_t height) {
+            return self.resized({width, height});
+          },
+          py::arg("width") = 0, py::arg("height") = 0,
+          "The trace in this size, in pixels; 0: in proportion to the other side. The vertical angle of view stays.")
+      .def(
+          "save",
+          [](const TraceHandle& self, const std::filesystem::path& file, bool binary) {
+            write_trace(self.trace(), file, binary ? ArrayStorage::binary : ArrayStorage::text);
+          },
+          py::arg("file"), py::arg("binary") = false,
+          "Writes the trace as JSON, or with its arrays in a binary file beside it.");
   module.def("open_trace", [](const std::filesystem::path& file, bool allow_outside) {
     return interruptible([&](const std::atomic<bool>&) {
       return TraceHandle(read_trace(file, {.allow_outside = allow_outside}), file.string());
