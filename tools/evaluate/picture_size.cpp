@@ -27,9 +27,8 @@ void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureS
   if (wanted == PictureSize{}) return;
   for (const std::size_t index : frames) {
     Frame& frame = trace.frames[index];
-    const PictureSize size{
-        wanted.width > 0 ? wanted.width : in_proportion(wanted.height, frame.width, frame.height),
-        wanted.height > 0 ? wanted.height : in_proportion(wanted.width, frame.height, frame.width)};
+    const PictureSize size{wanted.width > 0 ? wanted.width : in_proportion(wanted.height, frame.width, frame.height),
+                           wanted.height > 0 ? wanted.height : in_proportion(wanted.width, frame.height, frame.width)};
     const bool same_ratio = std::uint64_t{frame.width} * size.height == std::uint64_t{frame.height} * size.width;
     if (trace.source || has_viewport(frame) || (!frame.camera && !same_ratio))
       throw std::runtime_error(name + ": cannot be " + text_of(size) +

@@ -75,7 +75,7 @@ void require_inspectable(const Technique& technique) {
   const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
                                                   : "it is what the others are compared with";
   throw SpecError("technique '" + technique.spec + "' cannot be inspected: expected " + list_of(inspectable_names()) +
-                   "; " + why);
+                  "; " + why);
 }
 
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,

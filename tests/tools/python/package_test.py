@@ -99,7 +99,7 @@ class Program(unittest.TestCase):
         cls.folder = pathlib.Path(cls.scratch.name)
         cls.trace = beampipe.make("fence", triangles=3000, width=61, height=37, frames=2, pan=(0.3, 0.1))
         cls.trace.save(cls.folder / "fence.json")
-        cls.specs = ["beam:pool=60", "msaa:8", "taa"]
+        cls.specs = ["beam:pool=60", "msaa:8", "taa:4"]
         cls.run_program("compare", "fence.json", "-t", *cls.specs, "--metric", "mae", "--ladder", "1,4,16", "-o", "out")
         cls.report = beampipe.Report(cls.folder / "out")
 
@@ -252,7 +252,7 @@ class Errors(unittest.TestCase):
         self.check("width and height", lambda: make(points, [[0, 1, 2]], width=0, height=8))
         self.check("pixel 16,3", lambda: beampipe.inspect(trace, "beam", 16, 3))
         self.check("pixel -1,3", lambda: beampipe.inspect(trace, "beam", -1, 3))
-        self.check("cannot be inspected", lambda: beampipe.inspect(trace, "taa", 3, 3))
+        self.check("cannot be inspected", lambda: beampipe.inspect(trace, "taa:4", 3, 3))
         self.check("metric: expected one of rmse", lambda: beampipe.compare(trace, ["beam"], metric="rms"))
         self.check("at least 0, found nan", lambda: beampipe.compare(trace, ["beam"], metric=lambda a, b: numpy.nan, ladder=[1]))
         self.check("given twice", lambda: beampipe.compare(trace, ["beam", "beam"]))

@@ -15,17 +15,14 @@ lets other Python threads run, and Ctrl-C ends it.
 
 Errors are beampipe.Error, with one line that names what was wrong and what was expected.
 """
+from importlib.util import find_spec
+
 from .results import Error, Exr, Rate, Report, read_exr, read_table
 
 __all__ = ["Error", "Exr", "Rate", "Report", "read_exr", "read_table"]
 
-try:
-    from . import _native
-except ModuleNotFoundError as _missing:  # the package reads results without it
-    if _missing.name != f"{__name__}._native":
-        raise
-else:
-    from . import measures
+if find_spec(f"{__name__}._native"):  # without it, the package reads results
+    from . import _native, measures
     from ._native import Trace
     from .comparing import Comparison, Result, compare, equivalent_rate
     from .rendering import Inspection, Pattern, Rendering, inspect, reference, render, spec, techniques

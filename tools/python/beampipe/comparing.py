@@ -107,8 +107,9 @@ def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetr
         if names.count(name) > 1:
             raise Error(f"technique {name} is given twice")
     rungs = sorted(set(_native.default_rungs if ladder is None else ladder))
-    for spec in [each for each in wanted if isinstance(each, str)] + [f"msaa:{n}" for n in rungs]:
-        _native.Technique(spec)  # or an error before anything is rendered
+    own_rungs = {each: _native.Technique(each).rung for each in wanted if isinstance(each, str)}
+    for n in rungs:
+        _native.Technique(f"msaa:{n}")  # or an error before anything is rendered
     trace = trace.resized(width, height)
     chosen = rendering._frames(frames, trace)
 
@@ -127,16 +128,15 @@ def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetr
         return n, found[spec][2] if spec in found else measured.of(rendered(spec))
 
     heights = [rung(n) for n in rungs]
-    others = [error for name, (_, _, error) in found.items() if name not in [f"msaa:{n}" for n in rungs]]
+    others = [error for name, (_, _, error) in found.items() if not own_rungs.get(name)]
     for n in _native.more_rungs if ladder is None else ():
         if not any(error < min(height for _, height in heights) for error in others):
             break
         heights.append(rung(n))
 
-    def rate(name: str, error: float) -> Rate:
-        own = [n for n, _ in heights if name == f"msaa:{n}"]
-        return Rate(own[0]) if own else equivalent_rate(error, heights)
-
-    results = {name: Result(name, errors, error, rate(name, error), renderings)
-               for name, (renderings, errors, error) in found.items()}
+    results = {}
+    for name, (renderings, errors, error) in found.items():
+        own = own_rungs.get(name)
+        rate = Rate(own) if own else equivalent_rate(error, heights)
+        results[name] = Result(name, errors, error, rate, renderings)
     return Comparison(measured.name, results, reference, heights)

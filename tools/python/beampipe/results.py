@@ -34,7 +34,8 @@ class Rate:
     def __str__(self) -> str:
         if self.does_not_converge:
             return "does not converge"
-        return ("≥ " if self.is_lower_bound else "< " if self.is_upper_bound else "") + f"{self.samples:.3g}"
+        samples = f"{self.samples:.0f}" if self.samples >= 100 else f"{self.samples:.3g}"
+        return ("≥ " if self.is_lower_bound else "< " if self.is_upper_bound else "") + samples
 
 
 class Exr(dict):

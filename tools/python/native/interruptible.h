@@ -9,9 +9,9 @@
 
 namespace beampipe {
 
-// Returns what work(cancelled) returns, which runs on a thread of its own while other Python threads run. Meanwhile this
-// thread asks for signals. When a handler raises an exception, as that of Ctrl-C does, `cancelled` becomes true; the
-// exception goes on once the work has ended. Call it with the lock held.
+// Returns what work(cancelled) returns, which runs on a thread of its own while other Python threads run. Meanwhile
+// this thread asks for signals. When a handler raises an exception, as that of Ctrl-C does, `cancelled` becomes true;
+// the exception goes on once the work has ended. Call it with the lock held.
 template <class Work>
 auto interruptible(Work&& work) {
   constexpr std::chrono::milliseconds kBetweenSignals{50};

@@ -19,8 +19,7 @@ std::vector<Image> images_of(const std::vector<FloatArray>& arrays, const char* 
 }
 
 void check_pixels_per_degree(double value) {
-  if (!(value >= 1 && value <= 1000))
-    throw std::runtime_error("pixels_per_degree: expected a number from 1 to 1000");
+  if (!(value >= 1 && value <= 1000)) throw std::runtime_error("pixels_per_degree: expected a number from 1 to 1000");
 }
 
 const Measure& find_measure(const std::string& key) {
@@ -29,8 +28,8 @@ const Measure& find_measure(const std::string& key) {
   throw std::runtime_error("no measure is called " + key);
 }
 
-// The measures that have a value, and what equivalent rates compare: two dictionaries by key. `key` chooses one of those
-// that take long; if it is empty, all are measured.
+// The measures that have a value, and what equivalent rates compare: two dictionaries by key. `key` chooses one of
+// those that take long; if it is empty, all are measured.
 py::tuple measure(const std::vector<FloatArray>& pictures, const std::vector<FloatArray>& references,
                   double pixels_per_degree, const std::string& key) {
   check_pixels_per_degree(pixels_per_degree);

@@ -5,6 +5,7 @@
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
+#include "tools/evaluate/msaa_ladder.h"
 #include "tools/inspect/inspection.h"
 #include "tools/inspect/inspection_json.h"
 #include "tools/inspect/inspection_text.h"
@@ -51,8 +52,8 @@ py::dict to_python(const FrameResult& result) {
   return all;
 }
 
-py::dict render(const TraceHandle& trace, const Technique& technique, std::size_t frame, int threads,
-                bool memory_model, History* history) {
+py::dict render(const TraceHandle& trace, const Technique& technique, std::size_t frame, int threads, bool memory_model,
+                History* history) {
   FrameInput input = input_of(trace, frame, technique, threads);
   input.memory.modelled = memory_model;
   input.history = history;
@@ -86,6 +87,7 @@ void add_rendering(py::module_& module) {
   py::class_<Technique>(module, "Technique")
       .def(py::init([](const std::string& spec) { return parse_technique(spec); }))
       .def_readonly("spec", &Technique::spec)
+      .def_property_readonly("rung", [](const Technique& self) { return is_rung(self) ? self.samples : 0; })
       .def_readonly("keeps_history", &Technique::keeps_history)
       .def_property_readonly("bytes_in_memory",
                              [](const Technique& self) { return self.framebuffer_bytes_per_pixel(titan_v().memory); })

@@ -195,15 +195,14 @@ void add_traces(py::module_& module) {
                set_camera(frame, camera);
                return new_trace(mesh_of(positions, triangles, colors), std::move(frame));
              });
-  module.def("trace_with_matrices",
-             [](const FloatArray& positions, const IndexArray& triangles, const FloatArray& colors,
-                const FloatArray& background, std::uint32_t width, std::uint32_t height, const MatrixArray& view,
-                const MatrixArray& projection) {
-               Frame frame = new_frame({width, height}, background);
-               frame.view = matrix_of(view, "view");
-               frame.projection = matrix_of(projection, "projection");
-               return new_trace(mesh_of(positions, triangles, colors), std::move(frame));
-             });
+  module.def("trace_with_matrices", [](const FloatArray& positions, const IndexArray& triangles,
+                                       const FloatArray& colors, const FloatArray& background, std::uint32_t width,
+                                       std::uint32_t height, const MatrixArray& view, const MatrixArray& projection) {
+    Frame frame = new_frame({width, height}, background);
+    frame.view = matrix_of(view, "view");
+    frame.projection = matrix_of(projection, "projection");
+    return new_trace(mesh_of(positions, triangles, colors), std::move(frame));
+  });
 }
 
 }  // namespace beampipe
