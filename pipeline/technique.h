@@ -43,6 +43,12 @@ struct FrameInput {
   SurfaceColors colors = SurfaceColors::by_place;
   // If not null, only the bins that hold one of these pixels are rendered; the rest of the picture is black.
   const std::vector<PixelAddress>* pixels = nullptr;
+  // If not null, it is read before every bin, from any thread; once it is true, `render` throws Cancelled.
+  const std::atomic<bool>* cancelled = nullptr;
+};
+
+struct Cancelled : std::runtime_error {
+  Cancelled() : std::runtime_error("rendering was cancelled") {}
 };
 
 // Of the bins of a frame.

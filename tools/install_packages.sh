@@ -13,6 +13,8 @@ build=(
   libsqlite3-dev
   libboost-dev  # only headers: checksums and exact arithmetic
   node-d3       # D3, which becomes part of the report page
+  pybind11-dev python3-dev python3-numpy  # the Python module
+  python3-matplotlib                      # `beampipe figure`
 )
 capture=(
   renderdoc python3-renderdoc python3-numpy
@@ -23,6 +25,8 @@ test=(
   chromium chromium-driver python3  # tests of the report page
   python3-jsonschema                # holds results to their JSON Schemas
   python3-skimage                   # another SSIM
+  python3-pip python3-venv          # installs the wheel
+  python3-nbconvert python3-ipykernel  # runs the notebook
   libgtest-dev libbenchmark-dev
   clang libclang-rt-dev             # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones

@@ -49,6 +49,10 @@ StageId rasterizing_stage(const BinPlan& plan) {
   return found == plan.stages.end() ? StageId::none : *found;
 }
 
+void stop_if_cancelled(const FrameInput& run) {
+  if (run.cancelled && *run.cancelled) throw Cancelled();
+}
+
 // Where DRAM requests are to be recorded; null: nowhere.
 DramTrace* dram_trace_of(const FrameContext& context) {
   return context.run.memory.modelled ? context.sinks.dram_trace : nullptr;
@@ -368,6 +372,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
     if (band.first == 0) recorder.start(empty_bins.color());
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
+      stop_if_cancelled(run);
       const CountedBin counted(sinks.completion);
       const auto is_here = [&](const PixelAddress& pixel) { return grid.tiles[band.first + i].holds(pixel); };
       if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;
@@ -407,6 +412,7 @@ void run_on_tiles(const FrameContext& context, StageId stage, FrameResult& resul
   const std::uint32_t pass = trace ? trace->passes() : 0;
   on_threads(context.run.threads, [&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      stop_if_cancelled(context.run);
       const StageTimer timer(context.sinks.timeline, tiles[i]);
       DramLog log;
       const MemorySystem memory(context.run.memory, trace ? &log : nullptr);

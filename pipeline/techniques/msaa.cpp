@@ -1,5 +1,6 @@
 #include "pipeline/techniques/msaa.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -52,9 +53,8 @@ void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& len
   }
 }
 
-FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
+FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options, const Sampling& sampling) {
   const FrameContext context(job, {.derivatives = Derivatives::quad, .stored_as = format_of(options).channel});
-  const Sampling sampling = msaa_sampling(options.samples);
   History first;
   History& history = job.run.history ? *job.run.history : first;
   std::optional<FrameMotion> motion;
@@ -74,6 +74,16 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
     history.poses = motion->take_poses();
   }
   return result;
+}
+
+Technique technique_of(const MsaaOptions& options, const Sampling& sampling) {
+  return {.framebuffer = msaa_framebuffer(options),
+          .sampled_at = places_of(sampling),
+          .errs_by = {ErrorSource::sampled_depth},
+          .rounding_error = options.color == SampleColor::rgba8 ? 0.5 / 255 : kFp16Error,
+          .renderer = bind_options(render_msaa, options, sampling),
+          .is_observable = true,
+          .keeps_history = options.motion};
 }
 
 }  // namespace
@@ -106,6 +116,21 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
   depth_test.count_bytes();
   depth_test.read_colors(bin.stage(StageId::resolve));
   return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);
+}
+
+Technique msaa_at(const std::vector<glm::ivec2>& places) {
+  if (places.empty() || places.size() > kMaxMaskSamples)
+    throw SpecError("a sample pattern: expected 1 to " + std::to_string(kMaxMaskSamples) + " samples, found " +
+                    std::to_string(places.size()));
+  SamplePattern pattern;
+  for (const glm::ivec2& place : places) {
+    const auto i = static_cast<std::size_t>(pattern.count++);
+    if (std::min(place.x, place.y) < 0 || std::max(place.x, place.y) >= kSubpixelUnits)
+      throw SpecError("a sample pattern: expected samples inside the pixel, found sample " + std::to_string(i) +
+                      " outside");
+    pattern.x[i] = place.x, pattern.y[i] = place.y;
+  }
+  return technique_of({.samples = pattern.count}, {CellGrid{}, pattern});
 }
 
 TechniqueKind msaa_kind() {
@@ -143,14 +168,9 @@ TechniqueKind msaa_kind() {
                        "colours that are averaged: linear, or compressed by Reinhard's operator")};
           },
           [](const MsaaOptions& o) {
-            return Technique{.framebuffer = msaa_framebuffer(o),
-                             .samples = static_cast<std::uint32_t>(o.samples),
-                             .sampled_at = places_of(msaa_sampling(o.samples)),
-                             .errs_by = {ErrorSource::sampled_depth},
-                             .rounding_error = o.color == SampleColor::rgba8 ? 0.5 / 255 : kFp16Error,
-                             .renderer = bind_options(render_msaa, o),
-                             .is_observable = true,
-                             .keeps_history = o.motion};
+            Technique technique = technique_of(o, msaa_sampling(o.samples));
+            technique.samples = static_cast<std::uint32_t>(o.samples);
+            return technique;
           })};
 }
 

@@ -32,6 +32,10 @@ struct MsaaOptions {
   ResolveSpace space = ResolveSpace::linear;
 };
 
+// Multisampling with samples anywhere in the pixel: 1..32 of them, in units of 1/256 px (0..255) from its upper left
+// corner. It has no spec. Throws SpecError.
+Technique msaa_at(const std::vector<glm::ivec2>& places);
+
 // The depth test of forward shading, with colours. `sampling` must outlive it.
 DepthTestUnit forward_surface(Bin& bin, const Sampling& sampling, const MsaaOptions& options);
 

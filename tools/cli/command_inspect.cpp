@@ -9,8 +9,6 @@
 #include <iostream>
 #include <memory>
 
-#include "pipeline/spec.h"
-#include "pipeline/technique_table.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
@@ -68,22 +66,6 @@ bool shows_unicode() {
   const bool is_utf8 = std::strcmp(nl_langinfo_l(CODESET, locale), "UTF-8") == 0;
   freelocale(locale);
   return is_utf8;
-}
-
-std::vector<std::string> inspectable_names() {
-  std::vector<std::string> names;
-  for (const TechniqueKind& kind : technique_kinds())
-    if (parse_technique(kind.examples.front()).is_observable && (names.empty() || names.back() != kind.name))
-      names.push_back(kind.name);
-  return names;
-}
-
-void require_inspectable(const Technique& technique) {
-  if (technique.is_observable) return;
-  const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
-                                                  : "it is what the others are compared with";
-  throw UsageError("technique '" + technique.spec + "' cannot be inspected: expected " + list_of(inspectable_names()) +
-                   "; " + why);
 }
 
 std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, const Trace& trace,

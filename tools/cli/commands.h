@@ -11,6 +11,7 @@ void add_run_command(CommandLine& line, InterruptGate& gate);
 void add_compare_command(CommandLine& line, InterruptGate& gate);
 void add_report_command(CommandLine& line, InterruptGate& gate);
 void add_plot_command(CommandLine& line, InterruptGate& gate);
+void add_figure_command(CommandLine& line);
 void add_claims_command(CommandLine& line);
 void add_counters_command(CommandLine& line);
 void add_model_command(CommandLine& line);

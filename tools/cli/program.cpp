@@ -58,6 +58,7 @@ int run(int argc, char** argv, InterruptGate& gate) {
   add_compare_command(line, gate);
   add_report_command(line, gate);
   add_plot_command(line, gate);
+  add_figure_command(line);
   add_claims_command(line);
   add_counters_command(line);
   add_model_command(line);

@@ -1,6 +1,5 @@
 #include "tools/cli/trace_view.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "tools/cli/camera_file.h"
@@ -8,23 +7,6 @@
 
 namespace beampipe {
 namespace {
-
-constexpr std::uint32_t kMostPixels = 16384;  // as in a trace
-
-// One side times the ratio of the frame's own, rounded.
-std::uint32_t in_proportion(std::uint32_t side, std::uint32_t own, std::uint32_t own_side) {
-  const std::uint64_t rounded = (std::uint64_t{2} * side * own + own_side) / (std::uint64_t{2} * own_side);
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rounded, 1, kMostPixels));
-}
-
-void apply_size(const TraceView& view, const std::vector<std::size_t>& frames, const std::string& name, Trace& trace) {
-  for (const std::size_t index : frames) {
-    const Frame& frame = trace.frames[index];
-    const PictureSize size{view.width > 0 ? view.width : in_proportion(view.height, frame.width, frame.height),
-                           view.height > 0 ? view.height : in_proportion(view.width, frame.height, frame.width)};
-    if (size.width != frame.width || size.height != frame.height) resize(trace, {index}, size, name);
-  }
-}
 
 void apply_camera(const TraceView& view, const std::vector<std::size_t>& frames, const std::string& name,
                   Trace& trace) {
@@ -52,7 +34,7 @@ void add_trace_view_options(Command& command, TraceView& view) {
 
 void apply(const TraceView& view, const std::vector<std::size_t>& frames, const std::string& name, Trace& trace) {
   try {
-    if (view.width > 0 || view.height > 0) apply_size(view, frames, name, trace);
+    resize(trace, frames, {view.width, view.height}, name);
     if (!view.camera.empty()) apply_camera(view, frames, name, trace);
   } catch (const std::invalid_argument& error) {
     throw UsageError(view.camera + ": " + error.what());

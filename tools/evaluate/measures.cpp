@@ -194,6 +194,28 @@ ErrorStats measure_all(const Image& image, const Image& reference, double pixels
   return stats;
 }
 
+ErrorStats measure_frames(std::span<const PicturePair> frames, double pixels_per_degree, const Measure* only) {
+  const auto pixels_of = [](const PicturePair& frame) {
+    return std::uint64_t{frame.reference.width} * frame.reference.height;
+  };
+  std::uint64_t pixels = 0;
+  for (const PicturePair& frame : frames) pixels += pixels_of(frame);
+  ErrorAccumulator errors(pixels);
+  for (const PicturePair& frame : frames) errors.add(frame.image, frame.reference);
+  ErrorStats stats = errors.stats();
+  for (const Measure& measure : kMeasures) {
+    if (!measure.measure || (only && only != &measure)) continue;
+    double sum = 0;
+    for (const PicturePair& frame : frames) {
+      ErrorStats of_frame;
+      of_frame.*measure.stored = measure.measure(frame.image, frame.reference, pixels_per_degree);
+      sum += pooled_part(measure, *(of_frame.*measure.stored)) * static_cast<double>(pixels_of(frame));
+    }
+    stats.*measure.stored = pooled(measure, sum / static_cast<double>(pixels));
+  }
+  return stats;
+}
+
 ErrorStats no_error() {
   ErrorStats stats;
   stats.ssim = 1;

@@ -67,6 +67,11 @@ class MeasurePool {
 // All measures of one picture. Throws as measure_error does.
 ErrorStats measure_all(const Image& image, const Image& reference, double pixels_per_degree = kPixelsPerDegree);
 
+// Those of several frames, pooled as `compare` pools them. Of the measures that ErrorAccumulator does not find, only
+// this one is measured; null: all. Throws as measure_error does.
+ErrorStats measure_frames(std::span<const PicturePair> frames, double pixels_per_degree = kPixelsPerDegree,
+                          const Measure* only = nullptr);
+
 // Those of a picture that equals the reference.
 ErrorStats no_error();
 

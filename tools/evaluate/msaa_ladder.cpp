@@ -22,6 +22,9 @@ std::size_t index_of(const std::string& spec, const RunPlan& plan) {
 
 }  // namespace
 
+const std::vector<std::uint32_t>& default_rungs() { return kDefaultSamples; }
+const std::vector<std::uint32_t>& more_rungs() { return kMoreSamples; }
+
 bool is_rung(const Technique& technique) {
   return technique.samples > 0 && technique.spec == msaa_spec(technique.samples);
 }

@@ -17,6 +17,10 @@ namespace beampipe {
 // Is it msaa:N without options? Variants with options have other errors than a ladder's msaa:N.
 bool is_rung(const Technique& technique);
 
+// The rates of a ladder that does not name its own, and those that it gets too while a technique is better.
+const std::vector<std::uint32_t>& default_rungs();
+const std::vector<std::uint32_t>& more_rungs();
+
 // What errors are compared by.
 struct Metric {
   const Measure& measure = find_metric("rmse");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "pipeline/spec.h"
+#include "pipeline/technique_table.h"
 #include "stages/geometry/vertex_setup.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/metrics.h"
@@ -58,7 +60,23 @@ std::vector<PixelHistory> observed(const Technique& technique, const Trace& trac
   return histories;
 }
 
+std::vector<std::string> inspectable_names() {
+  std::vector<std::string> names;
+  for (const TechniqueKind& kind : technique_kinds())
+    if (parse_technique(kind.examples.front()).is_observable && (names.empty() || names.back() != kind.name))
+      names.push_back(kind.name);
+  return names;
+}
+
 }  // namespace
+
+void require_inspectable(const Technique& technique) {
+  if (technique.is_observable) return;
+  const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
+                                                  : "it is what the others are compared with";
+  throw SpecError("technique '" + technique.spec + "' cannot be inspected: expected " + list_of(inspectable_names()) +
+                  "; " + why);
+}
 
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
                                      const std::vector<PixelAddress>& pixels, const FrameInput& run) {

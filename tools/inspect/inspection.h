@@ -33,6 +33,9 @@ struct PixelInspection {
   std::vector<double> causes;              // of the error, or of the visibility error, in the order of kErrorCauses
 };
 
+// Throws SpecError unless it is observable.
+void require_inspectable(const Technique& technique);
+
 // The technique must be observable.
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
                                      const std::vector<PixelAddress>& pixels, const FrameInput& run);

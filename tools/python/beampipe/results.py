@@ -1,30 +1,41 @@
-"""Reads what the program beampipe writes: reports, pictures and counters, and tables of sweeps. Needs numpy alone.
+"""Reads what the program beampipe writes: reports, pictures and counters, and tables of sweeps. Needs numpy alone."""
+from __future__ import annotations
 
-  report = beampipe.Report("out")                     # of `beampipe run` or `beampipe compare`
-  report.techniques                                   # ["beam", "msaa:8", ...]
-  report["beam"]["error"]["rmse"]                     # what report.json has about a technique
-  report.stages("beam")["compose"]["dram_bytes"]      # counters of a stage, summed over the frames
-  report.picture("beam")                              # height x width x 4, linear RGBA, row 0 on top
-  report.counters("beam")["fragments"]                # height x width
-
-  exr = beampipe.read_exr("out/beam/frame_0000.exr")  # channels by name, and the header's attributes
-  exr.attributes["beampipe.technique"]
-
-  table = beampipe.read_table("sweep/table.csv")      # columns by name, as arrays
-  table["dram_bytes"][table["technique"] == "beam"]
-"""
 import csv
+import dataclasses
 import json
 import pathlib
 import sqlite3
 import struct
 import zlib
+from typing import Optional
 
 import numpy
 
 
 class Error(Exception):
     """One line: the file, and what is wrong with it."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Rate:
+    """An equivalent MSAA rate (EMR): samples per pixel.
+
+    is_lower_bound: it is more than `samples`, the last rung; is_upper_bound: it is less than `samples`, the first.
+    does_not_converge: there is none, because the ladder falls no more. low, high: how far unevenness leaves it open.
+    """
+    samples: float
+    is_lower_bound: bool = False
+    is_upper_bound: bool = False
+    does_not_converge: bool = False
+    low: Optional[float] = None
+    high: Optional[float] = None
+
+    def __str__(self) -> str:
+        if self.does_not_converge:
+            return "does not converge"
+        samples = f"{self.samples:.0f}" if self.samples >= 100 else f"{self.samples:.3g}"
+        return ("≥ " if self.is_lower_bound else "< " if self.is_upper_bound else "") + samples
 
 
 class Exr(dict):
@@ -146,6 +157,16 @@ class Report:
         if technique not in self._results:
             raise Error(f"{self.folder}: expected one of the techniques {', '.join(self._results)}, found {technique}")
         return self._results[technique]
+
+    def rate(self, technique) -> Optional[Rate]:
+        """The equivalent MSAA rate, if the run compared techniques with the reference."""
+        result, key = self[technique], "equivalent_msaa"
+        if result.get(f"{key}_does_not_converge"):
+            return Rate(numpy.inf, does_not_converge=True)
+        if key not in result:
+            return None
+        return Rate(result[key], bool(result.get(f"{key}_is_lower_bound")), bool(result.get(f"{key}_is_upper_bound")),
+                    low=result.get(f"{key}_low"), high=result.get(f"{key}_high"))
 
     def frames(self, technique):
         return self[technique]["frames"]

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Tests of tools/python/beampipe.py with what the built program writes: beampipe_module_test.py PROGRAM MODULE_FOLDER"""
+"""Tests of the package's reading of results: results_test.py PROGRAM PACKAGE_FOLDER EXAMPLE"""
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
 
-PROGRAM, MODULES = sys.argv[1:3]
+PROGRAM, MODULES, EXAMPLE = sys.argv[1:4]
 sys.path.insert(0, MODULES)
 
 import numpy
@@ -92,8 +93,8 @@ class Module(unittest.TestCase):
             beampipe.read_table(self.folder / "no.csv")
 
     def test_the_example_runs(self):
-        example = pathlib.Path(MODULES) / "example.py"
-        found = subprocess.run([sys.executable, example, "out"], cwd=self.folder, capture_output=True, text=True)
+        found = subprocess.run([sys.executable, EXAMPLE, "out"], cwd=self.folder, capture_output=True, text=True,
+                               env={**os.environ, "PYTHONPATH": MODULES})
         self.assertEqual(found.returncode, 0, found.stderr)
         self.assertIn("modelled, ms", found.stdout)
         self.assertRegex(found.stdout, r"beam: pixel \d+,\d+: .*error")

@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""Tests of the Python package with the compiled module: package_test.py PROGRAM PACKAGE_FOLDER"""
+import inspect
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+PROGRAM, PACKAGES = sys.argv[1:3]
+sys.path.insert(0, PACKAGES)
+
+import numpy
+
+import beampipe
+
+SIZE = 16  # px
+
+
+def half_plane(edge, **options):
+    """A white half-plane to the left of `edge`, in pixels, before a black background."""
+    x = 2 * edge / SIZE - 1
+    positions = [[-9, -9, 0], [x, -9, 0], [x, 9, 0], [-9, 9, 0]]
+    return beampipe.trace_from_arrays(positions, [[0, 1, 2], [0, 2, 3]], [1, 1, 1], width=SIZE, height=SIZE, **options)
+
+
+class Closed(unittest.TestCase):
+    """Pictures that are known."""
+
+    def test_a_half_plane_covers_half_of_the_pixels_on_its_edge(self):
+        for technique in ("beam", "reference", "msaa:16"):
+            found = beampipe.render(half_plane(5.5), technique)
+            self.assertEqual(found.picture.shape, (SIZE, SIZE, 3))
+            self.assertEqual(found.picture.dtype, numpy.float32)
+            expected = numpy.clip(5.5 - numpy.arange(SIZE), 0, 1)
+            numpy.testing.assert_array_equal(found.alpha, numpy.broadcast_to(expected, (SIZE, SIZE)), technique)
+            numpy.testing.assert_array_equal(found.picture[..., 1], found.alpha, technique)
+
+    def test_the_camera_sees_a_square_as_perspective_says(self):
+        square = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+        trace = beampipe.trace_from_arrays(square, [[0, 1, 2], [0, 2, 3]], [0.25, 0.5, 1], width=SIZE, height=SIZE,
+                                           background=(0, 0, 0.125), eye=(0, 0, 4), fovy=90)
+        found = beampipe.reference(trace).picture  # at distance 4, the picture is 8 units high: 2 px for a unit
+        inside = numpy.zeros((SIZE, SIZE), bool)
+        inside[6:10, 6:10] = True
+        numpy.testing.assert_array_equal(found[inside], numpy.broadcast_to(numpy.float32([0.25, 0.5, 1]), (16, 3)))
+        numpy.testing.assert_array_equal(found[~inside], numpy.broadcast_to(numpy.float32([0, 0, 0.125]), (240, 3)))
+
+    def test_matrices_multiply_column_vectors(self):
+        view = numpy.eye(4)
+        view[0, 3] = 2 * 3 / SIZE  # 3 px to the right
+        moved = beampipe.render(half_plane(5.5, view=view), "beam")
+        numpy.testing.assert_array_equal(moved.alpha, beampipe.render(half_plane(8.5), "beam").alpha)
+
+    def test_measures_of_known_errors(self):
+        truth = numpy.full((12, 12, 3), 0.25)
+        image = truth + 0.5
+        self.assertEqual(beampipe.measures.rmse(image, truth), 0.5)
+        self.assertEqual(beampipe.measures.mae(image, truth), 0.5)
+        self.assertEqual(beampipe.measures.bias(truth, image), -0.5)
+        self.assertEqual(beampipe.measures.maximum(image, truth), 0.5)
+        self.assertAlmostEqual(beampipe.measures.rel_mse(image, truth), 0.25 / (0.0625 + 0.01), places=12)
+        encoded = [1.055 * value ** (1 / 2.4) - 0.055 for value in (0.75, 0.25)]
+        self.assertAlmostEqual(beampipe.measures.srgb_rmse(image, truth), encoded[0] - encoded[1], places=6)
+        self.assertAlmostEqual(beampipe.measures.psnr(image, truth), -20 * numpy.log10(encoded[0] - encoded[1]), places=5)
+        self.assertEqual(beampipe.measures.psnr(truth, truth), float("inf"))
+        self.assertEqual(beampipe.measures.ssim(truth, truth), 1)
+        self.assertEqual(beampipe.measures.flip(truth, truth), 0)
+        numpy.testing.assert_array_equal(beampipe.measures.error_map("rmse", image, truth), numpy.full((12, 12), 0.5))
+
+    def test_every_measure_has_a_function_that_agrees_with_the_table(self):
+        noise = numpy.random.default_rng(1)
+        image, truth = noise.random((20, 30, 3)), noise.random((20, 30, 3))
+        everything = beampipe.measures.measure_all(image, truth)
+        self.assertEqual(list(everything), list(beampipe.measures.MEANINGS))
+        for key, value in everything.items():
+            function = getattr(beampipe.measures, "maximum" if key == "max" else key)
+            self.assertEqual(function(image, truth), value, key)
+            self.assertIn(beampipe.measures.MEANINGS[key][2], function.__doc__)
+
+    def test_a_rate_between_two_rungs_of_a_straight_ladder(self):
+        ladder = [(n, 1 / n) for n in (1, 2, 4, 8)]
+        self.assertAlmostEqual(beampipe.equivalent_rate(1 / 3, ladder).samples, 3)
+        self.assertTrue(beampipe.equivalent_rate(2, ladder).is_upper_bound)
+        self.assertEqual(str(beampipe.equivalent_rate(2, ladder)), "< 1")
+
+
+class Program(unittest.TestCase):
+    """What the program does, without files."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.scratch.name)
+        cls.trace = beampipe.make("fence", triangles=3000, width=61, height=37, frames=2, pan=(0.3, 0.1))
+        cls.trace.save(cls.folder / "fence.json")
+        cls.specs = ["beam:pool=60", "msaa:8", "taa:4"]
+        cls.run_program("compare", "fence.json", "-t", *cls.specs, "--metric", "mae", "--ladder", "1,4,16", "-o", "out")
+        cls.report = beampipe.Report(cls.folder / "out")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def run_program(cls, *arguments):
+        found = subprocess.run([PROGRAM, *arguments], cwd=cls.folder, check=True, capture_output=True, text=True)
+        return found.stdout
+
+    def test_scenes_are_those_of_make(self):
+        self.run_program("make", "fence", "--triangles", "3000", "--width", "61", "--height", "37", "--frames", "2", "--pan",
+                         "0.3,0.1", "-o", "made.json")
+        self.assertEqual((self.folder / "made.json").read_bytes(), (self.folder / "fence.json").read_bytes())
+        self.assertIn("fence", beampipe.scenes())
+
+    def test_pictures_and_counters_are_those_of_the_program_to_the_last_bit(self):
+        trace = beampipe.open_trace(self.folder / "fence.json")
+        self.assertEqual((trace.frames, trace.size(1)), (2, (61, 37)))
+        for spec in self.specs:
+            for frame, found in enumerate(beampipe.render(trace, spec, frames=None, threads=3)):
+                written = self.report.picture(spec, frame)
+                self.assertEqual(found.picture.tobytes(), written[..., :3].tobytes(), spec)
+                self.assertEqual(found.alpha.tobytes(), written[..., 3].tobytes(), spec)
+                layers = self.report.counters(spec, frame)
+                self.assertEqual(sorted(found.counters), sorted(set(layers) - {"error"}))
+                for name, layer in found.counters.items():
+                    self.assertEqual(layer.tobytes(), layers[name].tobytes(), name)
+
+    def test_stages_and_bytes_are_those_of_the_report(self):
+        for spec in self.specs:
+            of_program = self.report.frames(spec)[0]
+            found = beampipe.render(self.trace, spec)
+            self.assertEqual(found.dram_bytes, of_program["dram_bytes"])
+            for stage in of_program["stages"]:
+                for name, value in found.stages[stage["stage"]].items():
+                    key, _, kind = name.partition(".")
+                    self.assertEqual(value, stage[key][kind] if kind else stage[key], name)
+            self.assertEqual(found.bytes_in_memory + found.bytes_on_chip > 0, True)
+
+    def test_compare_finds_what_the_program_finds(self):
+        found = beampipe.compare(self.trace, self.specs, metric="mae", ladder=[1, 4, 16])
+        self.assertEqual([each.name for each in found], self.specs)
+        for each in found:
+            result = self.report[each.name]
+            self.assertEqual(each.errors, {key: result["error"][key] for key in each.errors})
+            self.assertEqual(each.rate.samples, result["equivalent_msaa"])
+        self.assertEqual(found.ladder, [(rung["samples"], rung["mae"]) if "mae" in rung else tuple(rung.values())
+                                        for rung in self.report.json["metric_ladder"]])
+        self.assertIn("msaa:8", found.table())
+
+    def test_options_are_keywords(self):
+        self.assertEqual(beampipe.spec("beam", pool=60), "beam:pool=60")
+        self.assertEqual(beampipe.spec("msaa:8", prepass=True, motion=False, at="centroid"), "msaa:8,prepass,at=centroid")
+        self.assertEqual(beampipe.render(self.trace, "beam", pool=60).technique, "beam:pool=60")
+
+    def test_inspect_explains_a_pixel_as_the_program_does(self):
+        found = beampipe.inspect(self.trace, "beam", 30, 18)
+        printed = json.loads(self.run_program("inspect", "fence.json", "-t", "beam", "--pixel", "30,18", "--json"))
+        self.assertEqual(found, printed["pixels"][0])
+        self.assertIn("Fragments", str(found))
+
+    def test_another_size(self):
+        found = beampipe.render(beampipe.make("fence", triangles=3000, width=64, height=48), "beam", width=32)
+        self.assertEqual(found.picture.shape, (24, 32, 3))
+
+class Own(unittest.TestCase):
+    """Techniques, metrics and patterns of the user's."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.trace = beampipe.make("fence", triangles=3000, width=40, height=30)
+
+    def test_a_technique_is_compared_as_any_other(self):
+        def doubled(trace, frame):
+            return 2 * beampipe.render(trace, "msaa:4", frames=frame).picture
+
+        found = beampipe.compare(self.trace, ["msaa:4", doubled, lambda trace, frame: numpy.zeros((30, 40, 4))],
+                                 ladder=[1, 4])
+        self.assertEqual(list(found.results), ["msaa:4", "doubled", "<lambda>"])
+        self.assertEqual(found["msaa:4"].rate.samples, 4)
+        truth = found.reference[0].picture.astype(float)
+        self.assertAlmostEqual(found["<lambda>"].error, numpy.sqrt(numpy.mean(truth ** 2)), places=12)
+        self.assertTrue(found["doubled"].rate.is_upper_bound)
+
+    def test_a_metric_finds_rates(self):
+        def worst(image, reference):
+            return abs(image.astype(float) - reference).max()
+
+        found = beampipe.compare(self.trace, ["beam"], metric=worst, ladder=[1, 4])
+        self.assertEqual(found.metric, "worst")
+        self.assertEqual(found["beam"].error, found["beam"].errors["max"])
+        self.assertEqual([n for n, _ in found.ladder], [1, 4])
+        self.assertGreater(found["beam"].rate.samples, 1)
+
+    def test_the_standard_pattern_is_msaa(self):
+        four = [[6, 2], [14, 6], [2, 10], [10, 14]]  # sixteenths of a pixel
+        pattern = beampipe.Pattern(numpy.array(four) / 16, name="four")
+        found, expected = beampipe.render(self.trace, pattern), beampipe.render(self.trace, "msaa:4")
+        self.assertEqual(found.picture.tobytes(), expected.picture.tobytes())
+        self.assertEqual(found.stages, expected.stages)
+        self.assertEqual(beampipe.compare(self.trace, [pattern], ladder=[1, 2])["four"].error,
+                         beampipe.measures.rmse(expected.picture, beampipe.reference(self.trace).picture))
+
+    def test_a_pattern_for_each_pixel_of_a_tile(self):
+        columns = beampipe.Pattern(lambda x, y: [[(1 + 2 * x + y) / 8, 0.5]], tile=(2, 2))
+        found = beampipe.render(half_plane(5.5), columns).alpha
+        # Of column 5, which is covered up to 0.5: samples at 3/8 in even rows and 4/8 in odd ones, whose edge is not in.
+        self.assertEqual(found[0::2, 5].tolist(), [1] * 8)
+        self.assertEqual(found[1::2, 5].tolist(), [0] * 8)
+        self.assertEqual(found[:, 4].tolist(), [1] * SIZE)
+
+    def test_three_samples(self):
+        pattern = beampipe.Pattern([[0.25, 0.5], [0.375, 0.5], [0.75, 0.5]])
+        self.assertAlmostEqual(float(beampipe.render(half_plane(5.5), pattern).alpha[3, 5]), 2 / 3, places=3)
+
+
+class Errors(unittest.TestCase):
+    def check(self, pattern, work):
+        with self.assertRaisesRegex(beampipe.Error, pattern) as caught:
+            work()
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_wrong_arguments_are_one_line(self):
+        trace, image = half_plane(5.5), numpy.zeros((4, 4, 3))
+        make = beampipe.trace_from_arrays
+        points, size = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], {"width": 8, "height": 8}
+        self.check("technique 'bea'", lambda: beampipe.render(trace, "bea"))
+        self.check("pool=", lambda: beampipe.render(trace, "beam", pool=61))
+        self.check("expected a spec, a Pattern or a function, found int", lambda: beampipe.render(trace, 8))
+        self.check("expected no options, found pool", lambda: beampipe.render(trace, lambda t, f: image, pool=60))
+        self.check(r"picture of 16 x 16 x 3 or 4 numbers, found \(4, 4, 3\)", lambda: beampipe.render(trace, lambda t, f: image))
+        self.check("expected frames from 0 to 0, found 1", lambda: beampipe.render(trace, "beam", frames=1))
+        self.check("threads: expected 1 to 1024", lambda: beampipe.render(trace, "beam", threads=-1))
+        self.check("cannot be 8 x 4 pixels", lambda: beampipe.render(trace, "beam", width=8, height=4))
+        self.check("no/trace.json", lambda: beampipe.open_trace("no/trace.json"))
+        self.check("fenc", lambda: beampipe.make("fenc"))
+        self.check("indices from 0 to 2", lambda: make(points, [[0, 1, 3]], **size))
+        self.check("indices from 0 to 2", lambda: make(points, [[0, 1, -1]], **size))
+        self.check("triangles: expected an array of integers", lambda: make(points, [[0, 1, 1.5]], **size))
+        self.check("positions: expected finite numbers", lambda: make([[0, 0, numpy.nan]] * 3, [[0, 1, 2]], **size))
+        self.check("positions: expected an array of N x 3", lambda: make([[0, 0]] * 3, [[0, 1, 2]], **size))
+        self.check("colors: expected one for each of 1 triangles", lambda: make(points, [[0, 1, 2]], [[1, 1, 1]] * 2, **size))
+        self.check("colors: expected linear RGB", lambda: make(points, [[0, 1, 2]], [-1, 0, 0], **size))
+        self.check("0 < near < far", lambda: make(points, [[0, 1, 2]], eye=(0, 0, 1), near=2, far=1, **size))
+        self.check("not the line of sight", lambda: make(points, [[0, 1, 2]], eye=(0, 1, 0), **size))
+        self.check("found both", lambda: make(points, [[0, 1, 2]], eye=(0, 0, 1), view=numpy.eye(4), **size))
+        self.check("width and height", lambda: make(points, [[0, 1, 2]], width=0, height=8))
+        self.check("pixel 16,3", lambda: beampipe.inspect(trace, "beam", 16, 3))
+        self.check("pixel -1,3", lambda: beampipe.inspect(trace, "beam", -1, 3))
+        self.check("cannot be inspected", lambda: beampipe.inspect(trace, "taa:4", 3, 3))
+        self.check("metric: expected one of rmse", lambda: beampipe.compare(trace, ["beam"], metric="rms"))
+        self.check("at least 0, found nan", lambda: beampipe.compare(trace, ["beam"], metric=lambda a, b: numpy.nan, ladder=[1]))
+        self.check("given twice", lambda: beampipe.compare(trace, ["beam", "beam"]))
+        self.check("technique 'msaa:3'", lambda: beampipe.compare(trace, ["beam"], ladder=[3]))
+        self.check("inside the pixel, found sample 1", lambda: beampipe.Pattern([[0.5, 0.5], [1, 0.5]]))
+        self.check("1 to 32 samples, found 33", lambda: beampipe.Pattern([[0.5, 0.5]] * 33))
+        self.check("N x 2 positions", lambda: beampipe.Pattern([0.5, 0.5]))
+        self.check(r"image: expected an array of height x width x 3 or 4 numbers, found \(4, 4\)",
+                   lambda: beampipe.measures.rmse(image[..., 0], image))
+        self.check("", lambda: beampipe.measures.rmse(image[:3], image))
+        self.check("pixels_per_degree", lambda: beampipe.measures.flip(image, image, 0))
+        self.check("p99 has no map", lambda: beampipe.measures.error_map("p99", image, image))
+
+    def test_an_error_in_the_users_own_code_goes_through(self):
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            beampipe.render(half_plane(5.5), lambda trace, frame: 1 / 0)
+
+
+INTERRUPTED = """
+import time, sys
+sys.path.insert(0, {packages!r})
+import beampipe
+trace = beampipe.make("hairball", triangles=20000, width=1280, height=720)
+print("now", flush=True)
+try:
+    beampipe.reference(trace, threads=1)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+print(float(beampipe.render(trace, "msaa:1", width=16).alpha.max()))  # it works on
+"""
+
+
+class Interrupts(unittest.TestCase):
+    def test_ctrl_c_ends_rendering_within_a_second(self):
+        with subprocess.Popen([sys.executable, "-c", INTERRUPTED.format(packages=PACKAGES)], stdout=subprocess.PIPE,
+                              text=True) as process:
+            self.assertEqual(process.stdout.readline(), "now\n")
+            time.sleep(0.5)
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.stdout.readline(), "interrupted\n")
+            self.assertLess(time.monotonic() - start, 1)
+            self.assertEqual(process.stdout.readline(), "1.0\n")
+            self.assertEqual(process.wait(), 0)
+
+    def test_other_threads_run_meanwhile(self):
+        trace, counted, done = beampipe.make("hairball", triangles=20000, width=160, height=90), [0], threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        before, start = counted[0], time.monotonic()
+        beampipe.reference(trace, threads=1)
+        during, took = counted[0] - before, time.monotonic() - start
+        done.set()
+        thread.join()
+        self.assertGreater(during, 50 * took)
+
+
+class Documented(unittest.TestCase):
+    def test_all_that_is_public_is_explained(self):
+        for name in beampipe.__all__:
+            self.assertTrue(inspect.getdoc(getattr(beampipe, name)), name)
+        self.assertTrue((pathlib.Path(PACKAGES) / "beampipe/py.typed").exists())
+
+    def test_stubs_name_what_the_compiled_module_has(self):
+        stub = (pathlib.Path(PACKAGES) / "beampipe/_native.pyi").read_text()
+        for name in dir(beampipe._native):
+            if not name.startswith("__"):
+                self.assertRegex(stub, rf"(?m)^(class |def )?{name}\b")
+
+    def test_without_the_compiled_module_the_package_reads_results(self):
+        with tempfile.TemporaryDirectory() as folder:
+            package = pathlib.Path(folder) / "beampipe"
+            package.mkdir()
+            for file in (pathlib.Path(PACKAGES) / "beampipe").glob("*.py"):
+                (package / file.name).write_bytes(file.read_bytes())
+            code = "import beampipe; print(beampipe.Report.__name__); beampipe.render"
+            found = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True,
+                                   env={**os.environ, "PYTHONPATH": folder})
+            self.assertEqual(found.stdout, "Report\n")
+            self.assertIn("AttributeError: beampipe.render: there is no such name, or it needs", found.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,142 @@
+"""Errors of techniques against the reference, and the MSAA rates that are as accurate."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Iterable, Iterator, Optional, Sequence, Union
+
+import numpy
+from numpy.typing import ArrayLike
+
+from . import _native, rendering
+from ._native import Trace
+from .rendering import AnyTechnique, Rendering
+from .results import Error, Rate
+
+# The key of a measure (measures.METRICS), or a function of (image, reference), both height x width x 3 in linear light,
+# that returns 0 where they are equal, and more the worse the image is.
+AnyMetric = Union[str, Callable[[numpy.ndarray, numpy.ndarray], float]]
+
+
+def equivalent_rate(error: float, ladder: Sequence[tuple[int, float]]) -> Rate:
+    """The rate at which msaa:N has this error. ladder: (N, error) for rising N."""
+    return Rate(**_native.equivalent_rate(error, ladder))
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What compare() found of a technique: errors by the keys of measures.MEANINGS, the error by the metric, and its
+    equivalent MSAA rate; `renderings` has the frames."""
+    name: str
+    errors: dict[str, float]
+    error: float
+    rate: Rate
+    renderings: list[Rendering]
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Results by name, in the order of the techniques; `ladder` has (N, error by the metric) of msaa:N."""
+    metric: str
+    results: dict[str, Result]
+    reference: list[Rendering]
+    ladder: list[tuple[int, float]]
+
+    def __getitem__(self, name: str) -> Result:
+        if name not in self.results:
+            raise Error(f"comparison: expected one of the techniques {', '.join(self.results)}, found {name}")
+        return self.results[name]
+
+    def __iter__(self) -> Iterator[Result]:
+        return iter(self.results.values())
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    def table(self) -> str:
+        """One line for each technique: RMSE x 1000, the error by the metric, and the equivalent rate."""
+        rows = [("technique", "RMSE x 1000", self.metric, "EMR")]
+        rows += [(each.name, f"{1000 * each.errors['rmse']:.3f}", f"{each.error:.4g}", str(each.rate)) for each in self]
+        widths = [max(len(row[column]) for row in rows) for column in range(4)]
+        return "\n".join("  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows)
+
+
+class _Metric:
+    """Errors of pictures by a metric; those of several frames as if they were one picture."""
+
+    def __init__(self, metric: AnyMetric, reference: list[Rendering], pixels_per_degree: float):
+        if isinstance(metric, str) and metric not in _native.metric_names:
+            raise Error(f"metric: expected one of {', '.join(_native.metric_names)}, or a function, found {metric}")
+        self.metric, self.name = metric, metric if isinstance(metric, str) else rendering.name_of(metric)
+        self.truths, self.pixels_per_degree = [each.picture for each in reference], pixels_per_degree
+
+    def _own(self, pictures: list) -> float:
+        errors = [float(self.metric(picture, truth)) for picture, truth in zip(pictures, self.truths)]
+        error = numpy.average(errors, weights=[truth.size for truth in self.truths])
+        if not (numpy.isfinite(error) and error >= 0):
+            raise Error(f"metric {self.name}: expected a number that is at least 0, found {error}")
+        return float(error)
+
+    def of(self, renderings: list[Rendering]) -> float:
+        pictures = [each.picture for each in renderings]
+        if not isinstance(self.metric, str):
+            return self._own(pictures)
+        return _native.measure(pictures, self.truths, self.pixels_per_degree, self.metric)[1][self.metric]
+
+    def all_of(self, renderings: list[Rendering]) -> tuple[dict[str, float], float]:
+        pictures = [each.picture for each in renderings]
+        values, errors = _native.measure(pictures, self.truths, self.pixels_per_degree, "")
+        if isinstance(self.metric, str):
+            return values, errors[self.metric]
+        own = self._own(pictures)
+        return {**values, self.name: own}, own
+
+
+def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetric = "rmse",
+            frames: Union[int, Iterable[int], None] = None, width: int = 0, height: int = 0, threads: int = 0,
+            ladder: Optional[Sequence[int]] = None, memory_model: bool = False,
+            pixels_per_degree: float = _native.pixels_per_degree) -> Comparison:
+    """Renders frames (None: all) with techniques and with the reference, and measures how wrong they are.
+
+    techniques: as for render(). metric: the measure by which equivalent MSAA rates are found, or a function of (image,
+    reference), both height x width x 3, linear, that returns 0 for equal pictures. ladder: MSAA rates to measure
+    (default: 1, 2, 4, ... 256, and 512 and 1024 while a technique is better). pixels_per_degree: of the view, for FLIP.
+    """
+    wanted = [techniques] if isinstance(techniques, str) else list(techniques)
+    names = [rendering.name_of(each) for each in wanted]
+    for name in names:
+        if names.count(name) > 1:
+            raise Error(f"technique {name} is given twice")
+    rungs = sorted(set(_native.default_rungs if ladder is None else ladder))
+    own_rungs = {each: _native.Technique(each).rung for each in wanted if isinstance(each, str)}
+    for n in rungs:
+        _native.Technique(f"msaa:{n}")  # or an error before anything is rendered
+    trace = trace.resized(width, height)
+    chosen = rendering._frames(frames, trace)
+
+    def rendered(technique: AnyTechnique, models: bool = False) -> list[Rendering]:
+        return rendering.render_frames(trace, technique, chosen, threads=threads, memory_model=models)
+
+    reference = rendered(_native.reference_spec)
+    measured = _Metric(metric, reference, pixels_per_degree)
+    found = {}
+    for name, technique in zip(names, wanted):
+        renderings = rendered(technique, memory_model)
+        found[name] = (renderings, *measured.all_of(renderings))
+
+    def rung(n: int) -> tuple[int, float]:
+        spec = f"msaa:{n}"
+        return n, found[spec][2] if spec in found else measured.of(rendered(spec))
+
+    heights = [rung(n) for n in rungs]
+    others = [error for name, (_, _, error) in found.items() if not own_rungs.get(name)]
+    for n in _native.more_rungs if ladder is None else ():
+        if not any(error < min(height for _, height in heights) for error in others):
+            break
+        heights.append(rung(n))
+
+    results = {}
+    for name, (renderings, errors, error) in found.items():
+        own = own_rungs.get(name)
+        rate = Rate(own) if own else equivalent_rate(error, heights)
+        results[name] = Result(name, errors, error, rate, renderings)
+    return Comparison(measured.name, results, reference, heights)

@@ -1,0 +1,88 @@
+"""beampipe figure: a figure for a paper from the folders of `beampipe compare`."""
+import argparse
+import pathlib
+import signal
+import sys
+
+from .results import Error, Report
+
+EXAMPLES = """The figure has a column for each technique and one for the reference: pictures with boxes, what is in the
+boxes, maps of the errors on one scale for all, the equivalent MSAA rate (EMR) and the RMSE.
+
+Examples:
+  beampipe figure out -o figure.pdf
+  beampipe figure fence leaves -t beam msaa:8 --crop 150,60,24,24 -o figure.svg --tex table.tex
+
+Debian packages: python3-matplotlib python3-numpy."""
+
+
+class WrongUsage(Exception):
+    """What the user asked for makes no sense: exit code 2."""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise WrongUsage(f"{message} (see beampipe figure --help)")
+
+
+def _crop(text):
+    words = text.split(",")
+    if len(words) != 4 or not all(word.isascii() and word.isdigit() for word in words):
+        raise argparse.ArgumentTypeError(f"{text}: expected X,Y,WIDTH,HEIGHT in pixels")
+    return tuple(map(int, words))
+
+
+def _inches(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0
+    if not 1 <= value <= 40:
+        raise argparse.ArgumentTypeError(f"{text}: expected 1 to 40 inches")
+    return value
+
+
+def parse(words):
+    parser = _Parser(prog="beampipe figure", description="Make a figure for a paper: pictures, crops, maps of errors.",
+                     epilog=EXAMPLES, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="+", metavar="DIR", help="what `beampipe compare` wrote; a row for each")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="the figure: .svg, .pdf or .png")
+    parser.add_argument("-t", "--technique", nargs="+", action="extend", metavar="SPEC",
+                        help="only these techniques, in this order (default: all)")
+    parser.add_argument("--crop", type=_crop, action="append", metavar="X,Y,W,H",
+                        help="enlarge these pixels; may be repeated (default: two squares where techniques differ most)")
+    parser.add_argument("--frame", type=int, default=0, metavar="N", help="the frame of the results (default: 0)")
+    parser.add_argument("--inches", type=_inches, default=7.0, metavar="N", help="the figure's width (default: 7)")
+    parser.add_argument("--tex", metavar="FILE", help="also write the numbers as a LaTeX table (booktabs)")
+    return parser.parse_args(words)
+
+
+def work(arguments):
+    try:
+        from . import figures
+    except ModuleNotFoundError as missing:
+        raise Error(f"{missing.name} is missing: please install the Debian packages python3-matplotlib "
+                    "python3-numpy") from None
+    if pathlib.Path(arguments.output).suffix not in figures.ENDINGS:
+        raise WrongUsage(f"-o {arguments.output}: expected a name that ends in .svg, .pdf or .png")
+    scenes = [figures.scene_of(Report(folder), techniques=arguments.technique, frame=arguments.frame)
+              for folder in arguments.folders]
+    figure = figures.draw(scenes, crops=arguments.crop, width=arguments.inches)
+    if arguments.tex:
+        figures.write_atomically(arguments.tex, figures.booktabs(scenes).encode())
+    figures.save(figure, arguments.output)
+
+
+def main():
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        work(parse(sys.argv[1:]))
+    except WrongUsage as error:
+        sys.exit(_say(error, 2))
+    except Error as error:
+        sys.exit(_say(error, 1))
+
+
+def _say(error, code):
+    print(f"beampipe: error: {error}", file=sys.stderr)
+    return code

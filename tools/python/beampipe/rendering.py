@@ -1,0 +1,190 @@
+"""Rendering with techniques: those of beampipe, sample patterns, and functions of the user's."""
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any, Callable, Iterable, Optional, Union
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._native import Trace
+from .results import Error
+
+
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """A frame as a technique rendered it.
+
+    picture: height x width x 3, float32, linear RGB, row 0 on top. alpha: height x width, the part of each pixel that
+    geometry covers, 0..1. counters: by name, height x width, what was counted in each pixel. stages: counters by stage
+    and name, as in report.json (`beampipe counters` explains them); operations are "ops.add" and so on. buffers: the
+    most bytes that each held at once. bytes_in_memory, bytes_on_chip: of the framebuffer, per pixel; on chip only while
+    a bin is drawn. Functions of the user's count nothing.
+    """
+    technique: str
+    frame: int
+    picture: NDArray[numpy.float32]
+    alpha: NDArray[numpy.float32]
+    counters: dict[str, NDArray[numpy.float32]] = field(default_factory=dict)
+    stages: dict[str, dict[str, int]] = field(default_factory=dict)
+    buffers: dict[str, int] = field(default_factory=dict)
+    bytes_in_memory: int = 0
+    bytes_on_chip: int = 0
+
+    @property
+    def dram_bytes(self) -> int:
+        """Bytes that move to and from the modelled DRAM, in all stages."""
+        return sum(stage.get("dram_bytes", 0) for stage in self.stages.values())
+
+
+class Pattern:
+    """Multisampling with samples of one's own: RGB16F and 32-bit depth for each, shaded once per triangle and pixel.
+
+    places: N x 2 positions (1 to 32), x to the right and y down from the pixel's upper left corner, 0 <= x, y < 1; they
+    are rounded to 1/256 px. Or a function of (x, y) that returns them for the pixels of a tile of tile = (width,
+    height), which repeats over the picture. Of such a pattern no stages are counted: each place in the tile is rendered
+    by itself.
+    """
+
+    def __init__(self, places: Union[ArrayLike, Callable[[int, int], ArrayLike]], *, name: str = "pattern",
+                 tile: tuple[int, int] = (1, 1)):
+        self.name, self.tile = name, tile
+        if min(tile) < 1:
+            raise Error(f"{name}: expected a tile of at least 1 x 1 pixels, found {tile[0]} x {tile[1]}")
+        self._techniques = {(x, y): _native.msaa_at(name, self._units(places(x, y) if callable(places) else places))
+                            for y in range(tile[1]) for x in range(tile[0])}
+
+    def _units(self, places: ArrayLike) -> list:
+        try:
+            units = numpy.round(256 * numpy.asarray(places, float))
+        except (TypeError, ValueError):
+            units = numpy.empty(0)
+        if units.ndim != 2 or units.shape[1] != 2 or not numpy.isfinite(units).all():
+            raise Error(f"{self.name}: expected an array of N x 2 positions")
+        return numpy.clip(units, -1, 256).astype(int).tolist()
+
+    def render(self, trace: Trace, frame: int, **how: Any) -> Rendering:
+        if len(self._techniques) == 1:
+            return _render_native(self._techniques[0, 0], trace, frame, **how)
+        width, height = self.tile
+        whole = None
+        for (x, y), technique in self._techniques.items():
+            part = _render_native(technique, trace, frame, **how)
+            whole = whole or Rendering(self.name, frame, part.picture.copy(), part.alpha.copy(),
+                                       bytes_in_memory=part.bytes_in_memory, bytes_on_chip=part.bytes_on_chip)
+            whole.picture[y::height, x::width] = part.picture[y::height, x::width]
+            whole.alpha[y::height, x::width] = part.alpha[y::height, x::width]
+        return whole
+
+
+# A spec, a pattern, or a function of (trace, frame) that returns a picture: height x width x 3 or 4, linear RGB and alpha.
+AnyTechnique = Union[str, Pattern, Callable[[Trace, int], ArrayLike]]
+
+
+def spec(technique: str, **options: Any) -> str:
+    """The spec of a technique with these options: spec("beam", pool=60) is "beam:pool=60". True sets a flag."""
+    items = [key if value is True else f"{key}={value}" for key, value in options.items() if value is not False]
+    return technique + "".join(("," if ":" in technique or i else ":") + item for i, item in enumerate(items))
+
+
+def techniques() -> str:
+    """All techniques and their options, as text."""
+    return _native.techniques()
+
+
+def name_of(technique: AnyTechnique) -> str:
+    if isinstance(technique, str):
+        return technique
+    if isinstance(technique, Pattern):
+        return technique.name
+    if callable(technique):
+        return getattr(technique, "__name__", type(technique).__name__)
+    raise Error(f"technique: expected a spec, a Pattern or a function, found {type(technique).__name__}")
+
+
+def _render_native(technique: _native.Technique, trace: Trace, frame: int, *, threads: int, memory_model: bool,
+                   history: Optional[_native.History] = None) -> Rendering:
+    found = _native.render(trace, technique, frame, threads, memory_model, history)
+    rgba = found["rgba"]
+    return Rendering(technique.spec, frame, numpy.ascontiguousarray(rgba[..., :3]), rgba[..., 3].copy(),
+                     found["counters"], found["stages"], found["buffers"], technique.bytes_in_memory,
+                     technique.bytes_on_chip)
+
+
+def _render_own(function: Callable, trace: Trace, frame: int) -> Rendering:
+    name, (width, height) = name_of(function), trace.size(frame)
+    picture = numpy.asarray(function(trace, frame), numpy.float32)
+    if picture.shape not in ((height, width, 3), (height, width, 4)):
+        raise Error(f"{name}: expected a picture of {height} x {width} x 3 or 4 numbers, found {picture.shape}")
+    alpha = picture[..., 3].copy() if picture.shape[2] == 4 else numpy.ones((height, width), numpy.float32)
+    return Rendering(name, frame, numpy.ascontiguousarray(picture[..., :3]), alpha)
+
+
+def _frames(frames: Union[int, Iterable[int], None], trace: Trace) -> list[int]:
+    chosen = list(range(trace.frames)) if frames is None else [frames] if isinstance(frames, int) else list(frames)
+    for frame in chosen:
+        if not 0 <= frame < trace.frames:
+            raise Error(f"{trace.name}: expected frames from 0 to {trace.frames - 1}, found {frame}")
+    return chosen
+
+
+def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, threads: int = 0,
+                  memory_model: bool = True) -> list[Rendering]:
+    """The frames in this order; techniques with a history keep it from one to the next."""
+    how = {"threads": threads, "memory_model": memory_model}
+    if isinstance(technique, Pattern):
+        return [technique.render(trace, frame, **how) for frame in frames]
+    if not isinstance(technique, str):
+        return [_render_own(technique, trace, frame) for frame in frames]
+    native, history = _native.Technique(technique), _native.History()
+    return [_render_native(native, trace, frame, history=history, **how) for frame in frames]
+
+
+def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable[int], None] = 0, width: int = 0,
+           height: int = 0, threads: int = 0, memory_model: bool = True,
+           **options: Any) -> Union[Rendering, list[Rendering]]:
+    """Renders a frame, or, as a list, several (None: all), with which techniques over time keep their history.
+
+    technique: a spec ("beam", "msaa:8"), a Pattern, or a function of (trace, frame) that returns height x width x 3 or
+    4 linear values. Options of a spec may be keywords: render(trace, "beam", pool=60). width, height: pixels; 0: as the
+    trace says, or in proportion to the other. threads: 0: one per core; results do not depend on it. memory_model:
+    count what moves through caches and DRAM of a Titan V.
+    """
+    name_of(technique)  # or it is none
+    if options:
+        if not isinstance(technique, str):
+            raise Error(f"{name_of(technique)}: expected no options, found {', '.join(options)}")
+        technique = spec(technique, **options)
+    trace = trace.resized(width, height)
+    found = render_frames(trace, technique, _frames(frames, trace), threads=threads, memory_model=memory_model)
+    return found[0] if isinstance(frames, int) else found
+
+
+def reference(trace: Trace, *, frames: Union[int, Iterable[int], None] = 0, width: int = 0, height: int = 0,
+              threads: int = 0) -> Union[Rendering, list[Rendering]]:
+    """What errors are measured against: 4096 samples per pixel. Arguments and results are those of render()."""
+    return render(trace, _native.reference_spec, frames=frames, width=width, height=height, threads=threads)
+
+
+class Inspection(dict):
+    """What `beampipe inspect --json` prints of a pixel; str() is the text of `beampipe inspect`."""
+
+    def __init__(self, values: dict, text: str):
+        super().__init__(values)
+        self.text = text
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def inspect(trace: Trace, technique: str, x: int, y: int, *, frame: int = 0, threads: int = 0,
+            **options: Any) -> Inspection:
+    """What happened in pixel (x, y), which counts from the upper left one, and why it is wrong."""
+    native = _native.Technique(spec(technique, **options))
+    try:
+        text = _native.inspect(trace, native, x, y, frame, threads)
+    except TypeError:
+        raise Error(f"pixel {x},{y}: expected x and y from 0") from None
+    return Inspection(json.loads(text[0]), text[1])
