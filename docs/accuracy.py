@@ -11,7 +11,8 @@ usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
 DIR is then a folder of `beampipe sweep`, with the plan and the traces. TABLE is its table.csv. Means over scenes are
-geometric; bounds of an EMR are taken for the EMR.
+geometric. A mean over rates of which some are bounds is a bound; there is none over bounds in both directions, nor over a
+scene where MSAA does not converge.
 """
 import csv
 import json
@@ -67,7 +68,12 @@ def sweep(program, models, folder, plan, other_way=False):
     """Makes the scenes and the plan in the folder, and sweeps. What is finished there is not done again."""
     folder = pathlib.Path(folder)
     scene_traces.main(program, models, "320", "180", folder / "scenes", other_way)
-    traces = [f"scenes/{trace.name}" for trace in sorted((folder / "scenes").glob("*.json"))]
+    run_sweep(program, folder, [f"scenes/{trace.name}" for trace in sorted((folder / "scenes").glob("*.json"))], plan)
+
+
+def run_sweep(program, folder, traces, plan):
+    """Sweeps traces, which are named as seen from the folder."""
+    folder = pathlib.Path(folder)
     plan = {"beampipe_sweep": 1, "traces": traces, "implementations": ["shaders"], "errors": True,
             "memory_system.on_chip_bytes": [ROOM]} | plan
     (folder / "plan.json").write_text(json.dumps(plan, indent=1) + "\n")
@@ -89,6 +95,9 @@ class Table:
     def row(self, scene, spec, size=None):
         return self.rows[scene, spec, size or self.size]
 
+    def rates(self, spec, scenes=None, size=None):
+        return [rate_of(self.row(scene, spec, size)) for scene in scenes or self.scenes]
+
     def values(self, column, spec, scenes=None, size=None):
         return [float(self.row(scene, spec, size)[column]) for scene in scenes or self.scenes]
 
@@ -101,28 +110,51 @@ def rate(value):
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
+def rate_of(row):
+    """A rate, and whether it is "lower" or "upper" than the true one, or "" if it is that. None if MSAA does not converge."""
+    return None if row["emr_bound"] == "none" else (float(row["emr"]), row["emr_bound"])
+
+
+def rate_text(found):
+    return "–" if found is None else {"lower": "≥ ", "upper": "< "}.get(found[1], "") + rate(found[0])
+
+
 def emr(row):
-    return {"lower": "≥ ", "upper": "< "}.get(row["emr_bound"], "") + rate(float(row["emr"]))
+    return rate_text(rate_of(row))
+
+
+def mean_rate(rates):
+    bounds = {bound for _, bound in filter(None, rates)} - {""}
+    if None in rates or len(bounds) > 1:
+        return "–"
+    return rate_text((mean([value for value, _ in rates]), next(iter(bounds), "")))
+
+
+def least_rate(rates):
+    return rate_text(min(filter(None, rates), default=None))
+
+
+SUMMARIES = {"geometric mean": mean_rate, "least": least_rate}
 
 
 def print_scenes(program, folder, table, density):
     """EMRs of each scene, at the size of the sweep and, for `beam`, at 1280 x 720."""
     print_head("scene", "triangles per pixel", *(f"`{spec}`" for spec in SCENES), "`beam` at 1280 × 720")
-    columns = [table.values("emr", spec) for spec in SCENES] + [density.values("emr", "beam", table.scenes, SIZES[0])]
+    columns = [table.rates(spec) for spec in SCENES] + [density.rates("beam", table.scenes, SIZES[0])]
     for scene in table.scenes:
         answer = subprocess.run([program, "info", folder / f"{scene}.json", "--json"], check=True, capture_output=True)
         frame = json.loads(answer.stdout)["frames"][0]
         print_row(scene, f"{frame['triangles'] / frame['width'] / frame['height']:.2g}",
                   *(emr(table.row(scene, spec)) for spec in SCENES), emr(density.row(scene, "beam", SIZES[0])))
-    for title, summary in (("geometric mean", mean), ("least", min)):
-        print_row(title, "", *(rate(summary(column)) for column in columns))
+    for title, summary in SUMMARIES.items():
+        print_row(title, "", *map(summary, columns))
 
 
 def print_density(table):
     print_head("technique", *(size.replace("x", " × ") for size in SIZES))
     for spec in DENSITY:
-        columns = [table.values("emr", spec, size=size) for size in SIZES]
-        print_row(f"`{spec}`", *(f"{rate(mean(column))}, {rate(min(column))}" for column in columns))
+        columns = [table.rates(spec, size=size) for size in SIZES]
+        print_row(f"`{spec}`", *(f"{mean_rate(column)}, {least_rate(column)}" for column in columns))
 
 
 def print_losses(table):
@@ -130,20 +162,28 @@ def print_losses(table):
     sizes = SIZES[:2]
     print_head("in place of what the paper does", "spec", *(f"EMR at {size.replace('x', ' × ')}" for size in sizes))
     for title, spec in LOSSES.items():
-        columns = [table.values("emr", spec, size=size) for size in sizes]
-        print_row(title, f"`{spec}`", *(f"{rate(mean(column))}, {rate(min(column))}" for column in columns))
+        columns = [table.rates(spec, size=size) for size in sizes]
+        print_row(title, f"`{spec}`", *(f"{mean_rate(column)}, {least_rate(column)}" for column in columns))
 
 
 def print_faces(table, other_way):
     """EMRs with and without back faces, and how long a frame takes without them, in relation."""
     print_head("technique", "all faces: EMR, mean", "least", "culled: EMR, mean", "least", "time, culled ÷ all")
     for spec in FACES:
+<<<<<<< HEAD
         def values(column, culled):
             return [float((table if (scene in PROCEDURAL) == culled else other_way).row(scene, spec)[column])
                     for scene in table.scenes]
         rates = [values("emr", culled) for culled in (False, True)]
         times = [new / old for new, old in zip(values("at_once_ms", True), values("at_once_ms", False))]
         print_row(f"`{spec}`", *(rate(summary(column)) for column in rates for summary in (mean, min)),
+=======
+        def rows(culled):
+            return [(table if (scene in PROCEDURAL) == culled else other_way).row(scene, spec) for scene in table.scenes]
+        rates = [list(map(rate_of, rows(culled))) for culled in (False, True)]
+        times = [float(new["modelled_ms"]) / float(old["modelled_ms"]) for new, old in zip(rows(True), rows(False))]
+        print_row(f"`{spec}`", *(summary(column) for column in rates for summary in SUMMARIES.values()),
+>>>>>>> 12289a9ea619bbcb0652ba3c473272ac3ee1cda6
                   f"{mean(times):.2f}")
 
 
@@ -157,8 +197,8 @@ def print_capacities(table):
     """Bytes on chip, and geometric mean and least EMR, by positions."""
     print_head("positions", "spec", "bytes on chip", "EMR: geometric mean", "least")
     for bits, spec in CAPACITIES.items():
-        rates = table.values("emr", spec)
-        print_row(bits, f"`{spec}`", f"{bytes_of(table, spec)[0]:.0f}", rate(mean(rates)), rate(min(rates)))
+        rates = table.rates(spec)
+        print_row(bits, f"`{spec}`", f"{bytes_of(table, spec)[0]:.0f}", mean_rate(rates), least_rate(rates))
 
 
 def print_pools(table):
@@ -184,16 +224,16 @@ def print_groups(table, specs, titles=(), extra=lambda spec: ()):
     groups = {title: scenes for title, scenes in groups.items() if scenes}
     print_head("technique", *titles, *(f"EMR: {title}" if i == 0 else title for i, title in enumerate(groups)), "least")
     for spec in specs:
-        print_row(f"`{spec}`", *extra(spec), *(rate(mean(table.values("emr", spec, scenes))) for scenes in groups.values()),
-                  rate(min(table.values("emr", spec))))
+        print_row(f"`{spec}`", *extra(spec), *(mean_rate(table.rates(spec, scenes)) for scenes in groups.values()),
+                  least_rate(table.rates(spec)))
 
 
 def print_steps(table):
     print_head("step", "spec", "on chip", "off chip", "EMR: mean", "least", "RMSE ÷ that of `msaa:256`")
     for step, spec in STEPS.items():
-        rates = table.values("emr", spec)
-        print_row(step, f"`{spec}`", *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), rate(mean(rates)),
-                  rate(min(rates)), f"{rmse_ratio(table, spec):.2f}")
+        rates = table.rates(spec)
+        print_row(step, f"`{spec}`", *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), mean_rate(rates),
+                  least_rate(rates), f"{rmse_ratio(table, spec):.2f}")
 
 
 def rmse_ratio(table, spec):
@@ -216,8 +256,8 @@ def print_bins(table):
     """The specs have bins of 32 pixels, and those of 16 and 8 that follow."""
     print_head("technique", *(f"`bin={bin}`: {title}" for bin in (32, 16, 8) for title in ("geometric mean", "least")))
     for spec, specs in BINS.items():
-        rates = [table.values("emr", each) for each in specs]
-        print_row(f"`{spec}`", *(rate(summary(of_spec)) for of_spec in rates for summary in (mean, min)))
+        rates = [table.rates(each) for each in specs]
+        print_row(f"`{spec}`", *(summary(of_spec) for of_spec in rates for summary in SUMMARIES.values()))
 
 
 def draw_frontier(table, path):

@@ -54,7 +54,7 @@ TechniqueKind reference_kind() {
   return {.name = "reference",
           .description = "4096 samples per pixel in double precision: the truth that errors are measured against",
           .source = "ours",
-          .examples = {"reference", "reference:set=2", "reference:samples=16384"},
+          .examples = {"reference", "reference:set=2"},
           .stressed = {"reference"},
           .make = make_from(
               ReferencePattern{},

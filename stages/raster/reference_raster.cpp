@@ -76,7 +76,7 @@ std::uint64_t list_layers(const DepthSpan& span, std::uint32_t triangle, const S
 }
 
 // Takes the samples of a run at which a cutout is there. Returns how many.
-std::uint64_t take_cutout(const DepthSpan& span, std::uint32_t triangle, const SampleRun& run, const TileShader& shader,
+std::uint64_t take_cutout(const DepthSpan span, std::uint32_t triangle, const SampleRun& run, const TileShader& shader,
                           CutoutCells& cells, ReferenceTile& surface) {
   const float unit = 1.0f / static_cast<float>(run.pattern.units());
   const int log_columns = std::countr_zero(static_cast<std::uint32_t>(run.pattern.columns));
@@ -84,25 +84,29 @@ std::uint64_t take_cutout(const DepthSpan& span, std::uint32_t triangle, const S
   const auto pixel_y = static_cast<std::int32_t>(floor_quotient(run.row, run.pattern.rows()));
   const auto cell_row = static_cast<std::int32_t>((run.row & (run.pattern.rows() - 1)) / kRowsPerCell);
   const float v = static_cast<float>(run.y) * unit, cutoff = shader.alpha_cutoff(triangle);
+  double* const depths = surface.depth.data() + run.at;
+  std::uint64_t* const owners = surface.owner.data() + run.at;
   std::uint64_t found = 0;
   for (std::size_t i = 0; i < run.count;) {
     const std::int64_t first = run.column + static_cast<std::int64_t>(i);
     const auto pixel =
         static_cast<std::uint32_t>(run.tile.index(static_cast<std::int32_t>(first >> log_columns), pixel_y));
     const std::size_t end = std::min(run.count, i + static_cast<std::size_t>(last_column - (first & last_column)) + 1);
-    if (cells.of_pixel(pixel) == CutoutCover::none) i = end;
+    const CutoutCover of_pixel = cells.of_pixel(pixel);
+    if (of_pixel == CutoutCover::none) i = end;
     for (; i < end; ++i) {
-      const std::size_t at = run.at + i;
       double depth = 0;
-      if (!depth_span_sample(span, static_cast<double>(i), surface.depth[at], depth)) continue;
-      const std::int64_t column = (run.column + static_cast<std::int64_t>(i)) & last_column;
-      const CutoutCover cover = cells.of_cell(pixel, static_cast<std::int32_t>(column), cell_row);
-      if (cover == CutoutCover::none) continue;
-      const float u = static_cast<float>(run.x + step * column) * unit;
-      if (cover == CutoutCover::mixed && shader.alpha(triangle, pixel, u, v, 0.0f) < cutoff) continue;
+      if (!depth_span_sample(span, static_cast<double>(i), depths[i], depth)) continue;
+      if (of_pixel == CutoutCover::mixed) {
+        const std::int64_t column = (run.column + static_cast<std::int64_t>(i)) & last_column;
+        const CutoutCover cover = cells.of_cell(pixel, static_cast<std::int32_t>(column), cell_row);
+        if (cover == CutoutCover::none) continue;
+        const float u = static_cast<float>(run.x + step * column) * unit;
+        if (cover == CutoutCover::mixed && shader.alpha(triangle, pixel, u, v, 0.0f) < cutoff) continue;
+      }
       ++found;
-      surface.depth[at] = depth;
-      surface.owner[at] = triangle;
+      depths[i] = depth;
+      owners[i] = triangle;
     }
   }
   return found;

@@ -100,7 +100,8 @@ TEST(CutoutCells, KnowAreasOfOneKind) {
   EXPECT_EQ(cells.of_pixel(1), CutoutCover::mixed) << "the edge is in its middle";
   EXPECT_EQ(cells.of_cell(1, 2, 3), CutoutCover::none);
   EXPECT_EQ(cells.of_cell(1, 13, 3), CutoutCover::all);
-  EXPECT_EQ(cells.of_pixel(3), CutoutCover::all);
+  EXPECT_EQ(cells.of_pixel(2), CutoutCover::all);
+  EXPECT_EQ(cells.of_pixel(3), CutoutCover::mixed) << "the texture repeats";
 }
 
 }  // namespace beampipe::cutout_cells_test
