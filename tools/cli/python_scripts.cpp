@@ -12,7 +12,7 @@ namespace beampipe {
 std::filesystem::path scripts_folder(const std::string& installed, const std::string& source, const std::string& file) {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
   const std::filesystem::path folder = program.parent_path() / ".." / installed;
-  return std::filesystem::exists(folder / file) ? folder : source;
+  return std::filesystem::exists(folder / file) ? folder : std::filesystem::path(source);
 }
 
 void become_python(const std::vector<std::string>& arguments) {
