@@ -159,7 +159,7 @@ class _Page:
         self.figure.text(x / self.width, self.y / self.height, text, **how)
 
 
-LEFT, GAP, TITLE, NUMBERS, BAR = 0.16, 0.04, 0.16, 0.30, 0.42  # inches
+LEFT, GAP, TITLE, NUMBERS, BAR = 0.16, 0.04, 0.19, 0.30, 0.42  # inches
 
 
 def _rows(scene: Scene, crops: Sequence[Crop], column: float) -> tuple[float, list[tuple[float, float]]]:
@@ -179,14 +179,13 @@ def _draw_scene(page: _Page, scene: Scene, crops: Sequence[Crop], column: float,
     top = page.y
     for i, each in enumerate(scene.columns):
         page.y, x = top, LEFT + i * (column + GAP)
-        page.text(x + column / 2, each.name, ha="center", va="top", fontsize=STYLE["axes.titlesize"])
-        page.y -= TITLE
-        maps = each.errors if each.errors is not None else None
-        for values, image in ((None, _on_screen(each.picture)), (maps, None)):
-            if values is None and image is None:
-                break
-            shown = {"interpolation": "none"} if values is None else {"interpolation": "none", "cmap": MAP, "norm": scale}
-            array = image if values is None else values
+        page.y -= TITLE - GAP
+        page.text(x + column / 2, each.name, ha="center", va="bottom", fontsize=STYLE["axes.titlesize"])
+        page.y -= GAP
+        layers = [(_on_screen(each.picture), {"interpolation": "none"})]
+        if each.errors is not None:
+            layers.append((each.errors, {"interpolation": "none", "cmap": MAP, "norm": scale}))
+        for array, shown in layers:
             axes = page.axes(x, column, picture_height)
             axes.imshow(array, aspect="auto", **shown)
             for number, (left, upper, w, h) in enumerate(crops):
@@ -201,7 +200,7 @@ def _draw_scene(page: _Page, scene: Scene, crops: Sequence[Crop], column: float,
                     spine.set(color=CROP_COLORS[number % len(CROP_COLORS)], linewidth=1)
                 at += w + GAP
             page.y -= crop_height
-        if maps is not None:
+        if each.errors is not None:
             page.text(x + column / 2, _numbers(each), ha="center", va="top", linespacing=1.3)
     page.y = top - TITLE - 2 * (picture_height + GAP + crop_height)
     _draw_scale(page, scale, LEFT + (len(scene.columns) - 1) * (column + GAP), column, picture_height + crop_height)
@@ -213,7 +212,7 @@ def _draw_scene(page: _Page, scene: Scene, crops: Sequence[Crop], column: float,
 def _draw_scale(page: _Page, scale: Normalize, x: float, width: float, height: float) -> None:
     """In place of the reference's map of errors, which would be black. page.y is its lower end."""
     page.y += min(height, BAR + 0.1)
-    axes = page.axes(x + 0.06 * width, 0.88 * width, 0.08)
+    axes = page.axes(x + 0.08 * width, 0.8 * width, 0.08)
     bar = page.figure.colorbar(ScalarMappable(scale, colormaps[MAP]), cax=axes, orientation="horizontal", extend="max",
                                ticks=[scale.vmin, scale.vmax / 2, scale.vmax], format="%.2g")
     bar.outline.set_linewidth(0.4)
