@@ -170,20 +170,11 @@ def print_faces(table, other_way):
     """EMRs with and without back faces, and how long a frame takes without them, in relation."""
     print_head("technique", "all faces: EMR, mean", "least", "culled: EMR, mean", "least", "time, culled ÷ all")
     for spec in FACES:
-<<<<<<< HEAD
-        def values(column, culled):
-            return [float((table if (scene in PROCEDURAL) == culled else other_way).row(scene, spec)[column])
-                    for scene in table.scenes]
-        rates = [values("emr", culled) for culled in (False, True)]
-        times = [new / old for new, old in zip(values("at_once_ms", True), values("at_once_ms", False))]
-        print_row(f"`{spec}`", *(rate(summary(column)) for column in rates for summary in (mean, min)),
-=======
         def rows(culled):
             return [(table if (scene in PROCEDURAL) == culled else other_way).row(scene, spec) for scene in table.scenes]
         rates = [list(map(rate_of, rows(culled))) for culled in (False, True)]
-        times = [float(new["modelled_ms"]) / float(old["modelled_ms"]) for new, old in zip(rows(True), rows(False))]
+        times = [float(new["at_once_ms"]) / float(old["at_once_ms"]) for new, old in zip(rows(True), rows(False))]
         print_row(f"`{spec}`", *(summary(column) for column in rates for summary in SUMMARIES.values()),
->>>>>>> 12289a9ea619bbcb0652ba3c473272ac3ee1cda6
                   f"{mean(times):.2f}")
 
 
