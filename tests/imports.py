@@ -56,7 +56,7 @@ SHARED_IN_GROUP = {
     "stages/beam/position_states-inl.h", "stages/beam/register_mask-inl.h", "stages/beam/casav_fragment.h",
     "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
-    "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/traverse.h",
+    "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/traverse.h",
     "stages/raster/traverse_cost.h", "stages/samples/sample_depth_cost.h", "stages/samples/sample_formulas.h",
     "stages/temporal/temporal_formulas.h"}
 # For the self-test: the rule that is expected ("-" for none), the file, and its text.

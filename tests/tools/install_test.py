@@ -127,7 +127,7 @@ class Install(unittest.TestCase):
             self.assertIn(f".SS beampipe {command}".replace("-", "\\-"), page.read_text())
 
     def test_the_python_module_is_there(self):
-        self.assertTrue((self.prefix / "share/beampipe/python/beampipe.py").is_file())
+        self.assertTrue((self.prefix / "lib/python3/dist-packages/beampipe/__init__.py").is_file())
 
     def test_the_debian_package_has_the_program_and_its_needs(self):
         if not shutil.which("dpkg-shlibdeps"):

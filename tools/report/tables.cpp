@@ -114,8 +114,6 @@ const std::vector<Source> kTechniqueColumns = {
     {{"busiest_core", "busiest core", "ratio",
       "Work of the busiest core over the mean, if bins start in their order on the core that is free first.", kTime},
      "/bin_spread/busiest_core"},
-    {{"bin_p99", "99 % of bins", "ratio", "Work of the bin that 99 % do not exceed, over the mean of bins.", kTime},
-     "/bin_spread/p99"},
     {{"bin_most", "fullest bin", "ratio", "Work of the fullest bin, over the mean of bins.", kTime},
      "/bin_spread/most"},
     {{"hardware", "hardware", "", "The GPU whose times are modelled.", kTime}, "/hardware"},

@@ -137,7 +137,10 @@ class ModelledTimesTest(unittest.TestCase):
                     if not is_geometry:  # what a bin takes that has its core and the shared units for itself
                         shares = {"latency": held} | {unit: 1 for unit in OF_CORES - {"latency"}}
                         alone += max(ms * shares.get(unit, 1 / memory["cores"]) for unit, ms in times.items())
-                longer = on_busiest_core(frame["bin_operations"], memory["cores"])
+                added = sum(cost["operations"] for cost in hardware.get("shading", NO_COSTS).values())
+                work = [operations + added * invocations for operations, invocations
+                        in zip(frame["bin_operations"], frame["bin_invocations"])]
+                longer = on_busiest_core(work, memory["cores"])
                 self.assertAlmostEqual(frame["bin_spread"]["busiest_core"], longer, delta=1e-9 * longer)
                 core = max(*(ms for unit, ms in of_bins.items() if unit in OF_CORES), alone / held)
                 on_cores = max(before.values()) + max(core * longer, *(ms for unit, ms in of_bins.items()
