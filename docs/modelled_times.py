@@ -95,7 +95,7 @@ def cores(program, folders):
         for technique, of in found.items():
             for name, time in of.items():
                 print_row(scene, f"`{name}`", f"`{technique}`",
-                          *(f"{time[how]:.3f}" for how in ("in_turn", "on_cores", "at_once")), f"{time['imbalance']:.2f}")
+                          *(f"{time[how]:.3f}" for how in ("in_turn", "on_cores", "at_once")), f"{time['bin_spread']['busiest_core']:.2f}")
 
 
 def kib_per_bin(result):

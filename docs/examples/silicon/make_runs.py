@@ -19,21 +19,27 @@ FERMI_EXPORT = ("SMs x 8 bytes: each hands on 2 pixels of 32 bits per clock (NVI
                 "choice: half as many of 64 bits")
 KEPLER_EXPORT = "choice: 8 SMX x 4 pixels of 32 bits, as many as the 32 ROPs take"
 BEHARDWARE = "BeHardware, article 795: GF104 in blocks of each SM, which run at twice the clock"
+FERMI_THREADS = (1536, 32768, 11), "CUDA C Programming Guide, compute capability 2.x; 22 clocks of lanes at twice the clock"
+KEPLER_THREADS = (2048, 65536, 11), "CUDA C Programming Guide, compute capability 3.x"
 ROP = "x 16/3 depth samples: the 48 of GF100 write 256 that compress (NVIDIA, quoted by PC Games Hardware)"
 
 
-def part(name, mhz, sms, sm, rops, export, rasters, gb_per_s, l2_kib, sources):
+def part(name, mhz, sms, sm, of_threads, rops, export, rasters, gb_per_s, l2_kib, sources):
     """A description. sm: lanes of an SM per clock of the rest: float, load and store, special functions, texture units;
-    rasters: units that set up a triangle and find 8 pixels each per clock."""
-    lanes, loads, special, textures = (count * sms for count in sm)
+    of_threads: an SM's threads and registers and the clocks of an operation, and where these are from; rasters: units
+    that set up a triangle and find 8 pixels each per clock."""
+    lanes, loads, special, textures = sm
+    (threads, registers, operation), thread_source = of_threads
     rates = {
         "triangles_per_clk": rasters, "raster_pixels_per_clk": 8 * rasters,
         "conservative_pixels_per_clk": 8 * rasters, "quads_per_clk": 2 * rasters, "export_bytes_per_clk": export,
-        "issue_per_clk": lanes, "mul_add_per_clk": lanes, "add_per_clk": lanes, "bit_per_clk": lanes / 2,
-        "wide_per_clk": lanes / 4, "fetch_per_clk": loads, "special_per_clk": special, "convert_per_clk": special,
-        "texture_bytes_per_clk": 16 * textures, "rop_samples_per_clk": round(rops * 16 / 3),
+        "core_issue_per_clk": lanes, "core_mul_add_per_clk": lanes, "core_add_per_clk": lanes,
+        "core_bit_per_clk": lanes / 2, "core_wide_per_clk": lanes / 4, "core_fetch_per_clk": loads,
+        "core_special_per_clk": special, "core_convert_per_clk": special, "core_texture_bytes_per_clk": 16 * textures,
+        "core_threads": threads, "core_registers": registers, "operation_clocks": operation,
+        "rop_samples_per_clk": round(rops * 16 / 3),
         "rop_fragments_per_clk": rops, "rop_bytes_per_clk": round(rops * 16 / 3) * 4,
-        "on_chip_bytes_per_clk": 128 * sms, "l2_bytes_per_clk": 32 * rops / 2,
+        "core_on_chip_bytes_per_clk": 128, "l2_bytes_per_clk": 32 * rops / 2,
         "dram_bytes_per_clk": round(gb_per_s * 1e3 / mhz, 1)}
     hardware = json.loads(TITAN_V.read_text())
     hardware |= {"name": name, "clock_mhz": mhz}
@@ -56,22 +62,26 @@ def part(name, mhz, sms, sm, rops, export, rasters, gb_per_s, l2_kib, sources):
         "rop_fragments_per_clk": f"{rops} ROPs; choice: one blended pixel each",
         "l2_bytes_per_clk": "choice: 64 bytes for 4 ROPs", "dram_bytes_per_clk": sources["sms"]}
     for rate in ("issue", "mul_add", "add", "fetch", "special"):
-        hardware["sources"][f"{rate}_per_clk"] = sources["lanes"]
+        hardware["sources"][f"core_{rate}_per_clk"] = sources["lanes"]
     for rate in ("bit", "wide", "convert"):
-        hardware["sources"][f"{rate}_per_clk"] = "choice: half of the float lanes, a quarter, and the special functions"
-    hardware["sources"]["texture_bytes_per_clk"] = "texture units x 16 bytes, a bilinear probe"
-    hardware["sources"]["on_chip_bytes_per_clk"] = "choice: 128 bytes in each SM"
+        hardware["sources"][f"core_{rate}_per_clk"] = "choice: half of the float lanes, a quarter, and the special functions"
+    for rate in ("core_threads", "core_registers", "operation_clocks"):
+        hardware["sources"][rate] = thread_source
+    for rate in ("fetch_clocks", "l2_clocks", "dram_clocks"):
+        hardware["sources"][rate] = "choice: as titan_v"
+    hardware["sources"]["core_texture_bytes_per_clk"] = "texture units x 16 bytes, a bilinear probe"
+    hardware["sources"]["core_on_chip_bytes_per_clk"] = "choice: 128 bytes in each SM"
     return hardware
 
 
 PARTS = {
-    "gtx_460": part("GeForce GTX 460, 768 MB", 675, 7, (96, 32, 16, 8), 24, 7 * 8, 2, 86.4, 384, {
+    "gtx_460": part("GeForce GTX 460, 768 MB", 675, 7, (96, 32, 16, 8), FERMI_THREADS, 24, 7 * 8, 2, 86.4, 384, {
         "sms": "TechSpot, review 299: 7 SMs, 24 ROPs, 675 MHz, 86.4 GB/s", "l2": "384 KB (iXBT Labs, gf104-p2)",
         "lanes": BEHARDWARE, "export": FERMI_EXPORT}),
-    "gtx_580": part("GeForce GTX 580", 772, 16, (64, 32, 8, 4), 48, 16 * 8, 4, 192.4, 768, {
+    "gtx_580": part("GeForce GTX 580", 772, 16, (64, 32, 8, 4), FERMI_THREADS, 48, 16 * 8, 4, 192.4, 768, {
         "sms": "Guru3D, GTX 680 review: 16 SMs, 48 ROPs, 772 MHz, 192 GB/s", "l2": "768 KB (in4.pl, GTX 680)",
         "lanes": "as GF100: BeHardware, article 795", "export": FERMI_EXPORT}),
-    "gtx_680": part("GeForce GTX 680", 1006, 8, (192, 32, 32, 16), 32, 8 * 16, 4, 192.3, 512, {
+    "gtx_680": part("GeForce GTX 680", 1006, 8, (192, 32, 32, 16), KEPLER_THREADS, 32, 8 * 16, 4, 192.3, 512, {
         "sms": "Guru3D, GTX 680 review: 8 SMX, 32 ROPs, 1006 MHz, 192.3 GB/s", "l2": "512 KB (in4.pl, GTX 680)",
         "lanes": "192 lanes in each SMX (Guru3D); load, store and special functions: choice, 32 each",
         "export": KEPLER_EXPORT}),
