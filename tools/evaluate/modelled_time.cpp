@@ -193,14 +193,15 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   return times;
 }
 
-// Does the implementation do any of these stages in ROPs?
+// Does the implementation do any of these stages in ROPs? What `resolve` reads has been there before.
 bool has_rops(const Implementation& implementation, const std::vector<StageCounters>& stages) {
   const auto is_rop = [](const std::string& unit) {
     return unit == "rop_samples" || unit == "rop_fragments" || unit == "composer";
   };
   return std::any_of(stages.begin(), stages.end(), [&](const StageCounters& stage) {
     const auto found = implementation.units.find(stage.stage.id);
-    return found != implementation.units.end() && std::any_of(found->second.begin(), found->second.end(), is_rop);
+    return stage.stage.id != StageId::resolve && found != implementation.units.end() &&
+           std::any_of(found->second.begin(), found->second.end(), is_rop);
   });
 }
 

@@ -45,6 +45,10 @@ TEST(ModelledTime, ColoursGoToRops) {
   EXPECT_NEAR(of(StageId::accumulate, 0), 10, 1e-6);
   EXPECT_NEAR(of(StageId::compose, 0), 3840.0 / 10240, 1e-6);
   EXPECT_NEAR(of(StageId::compose, 1), 10, 1e-6);
+  const Hardware mali = read_hardware("mali_g710");
+  const std::vector<StageCounters> stages = {shade, StageCounters{StageId::compose}, StageCounters{StageId::resolve}};
+  EXPECT_NEAR(clocks(mali, modelled_time(mali, mali.implementations.at(0), {stages}).in_turn_ms), 3840.0 / 640, 1e-6)
+      << "ROPs resolve what cores have kept on chip";
 }
 
 // A picture of small triangles takes as long as their setup; rasterizing them has units of its own.
