@@ -1,5 +1,5 @@
 // The truth: 4096 samples per pixel in double precision, on the same snapped triangles as every technique. Other sets
-// of samples tell how far it errs. same snapped triangles as every technique.
+// of samples tell how far it errs.
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
 #include "stages/raster/reference_raster.h"

@@ -53,6 +53,38 @@ TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
   EXPECT_EQ(on_chip.image.rgba, in_memory.image.rgba);
 }
 
+// 384 KiB of caches, 80 cores with two bins each: 160 bins that find no room have 2457 bytes each, 4 bins of a small
+// frame have a quarter, and a thousand cores leave one set of 4 lines of 256 bytes.
+TEST(Framebuffer, BinsWithoutRoomShareTheCachesOfRops) {
+  const Framebuffer beam = parse_technique("beam").framebuffer, msaa = parse_technique("msaa:8").framebuffer;
+  MemoryParameters memory;
+  const std::uint32_t all = memory.rop.bytes;
+  EXPECT_EQ(beam.memory_of_bin(memory, 1000).rop.bytes, all) << "on chip";
+  memory.on_chip_bytes = 64 * 46 - 1;
+  EXPECT_TRUE(beam.finds_no_room(memory));
+  EXPECT_EQ(beam.memory_of_bin(memory, 1000).rop.bytes, 2457u);
+  EXPECT_EQ(beam.memory_of_bin(memory, 1000).framebuffer, Place::in_memory);
+  EXPECT_EQ(beam.memory_of_bin(memory, 4).rop.bytes, all / 4);
+  EXPECT_FALSE(msaa.finds_no_room(memory)) << "in memory on the machine that it is made for";
+  EXPECT_EQ(msaa.memory_of_bin(memory, 1000).rop.bytes, all);
+  memory.cores = 1000;
+  EXPECT_EQ(beam.memory_of_bin(memory, 5000).rop.bytes, 1024u);
+}
+
+// What a bin needs of its part of the caches not to evict anything, the whole caches need as often as they are shared.
+TEST(Framebuffer, ReachIsThatOfTheWholeCaches) {
+  const Trace trace = covered_bin();
+  MemoryParameters memory;
+  memory.framebuffer = Place::in_memory;
+  const std::uint64_t reach = render_with("beam", trace, memory).cache_reach.rop;
+  EXPECT_GT(reach, 0u);
+  memory.framebuffer = std::nullopt;
+  memory.on_chip_bytes = 1;
+  EXPECT_EQ(render_with("beam", trace, memory).cache_reach.rop, reach) << "one bin shares with none";
+  memory.bin_pixels = 16;  // four bins, with a quarter of the pixels and of the caches each
+  EXPECT_EQ(render_with("beam", trace, memory).cache_reach.rop, reach);
+}
+
 // 46 bytes of a pixel and two bins to a core: 32 x 32 need 94,208 bytes, 16 x 16 a quarter of that, 8 x 8 a sixteenth,
 // and one of 8 x 8 half of that.
 TEST(Framebuffer, BinsAreAsLargeAsFit) {

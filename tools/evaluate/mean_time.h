@@ -9,8 +9,8 @@
 
 namespace beampipe {
 
-// The means over the frames, of which there is at least one, and over those frames that have a stage, its part of each
-// frame. Units are those of the first frame. `implementation`: its number in the hardware.
+// The means over the frames, of which there is at least one; a stage takes no time in a frame that lacks it. Units are
+// those of the first frame that has the stage. `implementation`: its number in the hardware.
 ModelledTime mean_time(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result);
 
 // The same, and on each of the hardware's draws (sensitivity.h). Nine in ten of the drawn times and the described one

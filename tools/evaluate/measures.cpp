@@ -177,14 +177,15 @@ void MeasurePool::add(const ErrorStats& frame, std::uint64_t pixels) {
   const auto frame_pixels = static_cast<double>(pixels);
   pixels_ += frame_pixels;
   for (const Measure& measure : measures())
-    if (measure.stored)
+    if (measure.stored && frame.*measure.stored)
       sums_.*measure.stored =
           (sums_.*measure.stored).value_or(0) + pooled_part(measure, *(frame.*measure.stored)) * frame_pixels;
 }
 
 void MeasurePool::finish(ErrorStats& stats) const {
   for (const Measure& measure : measures())
-    if (measure.stored) stats.*measure.stored = pooled(measure, *(sums_.*measure.stored) / pixels_);
+    if (measure.stored && sums_.*measure.stored)
+      stats.*measure.stored = pooled(measure, *(sums_.*measure.stored) / pixels_);
 }
 
 ErrorStats measure_all(const Image& image, const Image& reference, double pixels_per_degree) {
@@ -201,18 +202,17 @@ ErrorStats measure_frames(std::span<const PicturePair> frames, double pixels_per
   std::uint64_t pixels = 0;
   for (const PicturePair& frame : frames) pixels += pixels_of(frame);
   ErrorAccumulator errors(pixels);
-  for (const PicturePair& frame : frames) errors.add(frame.image, frame.reference);
-  ErrorStats stats = errors.stats();
-  for (const Measure& measure : kMeasures) {
-    if (!measure.measure || (only && only != &measure)) continue;
-    double sum = 0;
-    for (const PicturePair& frame : frames) {
-      ErrorStats of_frame;
-      of_frame.*measure.stored = measure.measure(frame.image, frame.reference, pixels_per_degree);
-      sum += pooled_part(measure, *(of_frame.*measure.stored)) * static_cast<double>(pixels_of(frame));
-    }
-    stats.*measure.stored = pooled(measure, sum / static_cast<double>(pixels));
+  MeasurePool pool;
+  for (const PicturePair& frame : frames) {
+    errors.add(frame.image, frame.reference);
+    ErrorStats of_frame;
+    for (const Measure& measure : kMeasures)
+      if (measure.measure && (!only || only == &measure))
+        of_frame.*measure.stored = measure.measure(frame.image, frame.reference, pixels_per_degree);
+    pool.add(of_frame, pixels_of(frame));
   }
+  ErrorStats stats = errors.stats();
+  pool.finish(stats);
   return stats;
 }
 

@@ -53,7 +53,7 @@ double pooled(const Measure& measure, double average);
 // Adds up what ErrorAccumulator does not measure, frame by frame.
 class MeasurePool {
  public:
-  // `frame`: with all measures, of a frame with this many pixels.
+  // `frame`: of a frame with this many pixels, with the same measures as the others.
   void add(const ErrorStats& frame, std::uint64_t pixels);
 
   // Sets these measures as if all frames were one picture.

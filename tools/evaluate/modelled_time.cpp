@@ -55,8 +55,8 @@ double shader_clocks(const Rates& rates, const StageWork& s) {
        over(s.logical_bytes() - s.texture_bytes, rates.of_cores("core_on_chip_bytes_per_clk"))});
 }
 
-// How long the threads in flight wait for each other's operations, loads and sectors. A thread waits for each of its
-// operations and loads, and four threads together for a sector.
+// A thread waits for each of its operations and loads, and four threads together for a sector. Threads in flight wait
+// at the same time.
 double latency_clocks(const Rates& rates, const StageWork& s) {
   const auto operations = static_cast<double>(s.ops.total() + s.ops.wide - s.ops.fetch);
   const double loads = static_cast<double>(s.ops.fetch) + static_cast<double>(s.texture_bytes) / kProbeBytes;

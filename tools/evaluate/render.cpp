@@ -157,6 +157,7 @@ FrameResult render_kept(const Technique& technique, const RunPlan& plan, std::si
   result.buffers = std::move(kept.report.buffers);
   result.bin_pixels = static_cast<std::uint32_t>(kept.report.bin_pixels);
   result.bin_operations = std::move(kept.report.bin_operations);
+  result.bin_invocations = std::move(kept.report.bin_invocations);
   return result;
 }
 

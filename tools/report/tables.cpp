@@ -55,9 +55,8 @@ const std::vector<Source> kTechniqueColumns = {
       kAccuracy},
      "/emr_bound"},
     {{"emr_low", "EMR from", "samples per pixel",
-      "The lower end of the range of the EMR, about a standard deviation away: by the unevenness of the MSAA ladder, "
-      "by "
-      "blocks of pixels drawn again, and by the reference's own error, if that was measured.",
+      "The lower end of the range of the EMR, about a standard deviation away: by the unevenness of the MSAA "
+      "ladder, by blocks of pixels drawn again, and by the reference's own error, if that was measured.",
       kAccuracy},
      "/equivalent_msaa_low"},
     {{"emr_high", "EMR to", "samples per pixel", "The upper end of that range.", kAccuracy}, "/equivalent_msaa_high"},
@@ -292,16 +291,10 @@ std::vector<Source> with_modelled(std::vector<Source> sources, const ReportFile&
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
     const std::string title = implementation + ", ";
-    const Source at_once = {{key + "_at_once", title + "at once", unit,
-                             "Modelled time if all stages run at once: the time of the busiest unit.", kTime},
-                            pointer + "/at_once"};
-    const Source on_cores = {{key + "_on_cores", title + "on cores", unit,
-                              "Modelled time if bins are drawn one by one on cores, after the geometry.", kTime},
-                             pointer + "/on_cores"};
-    const Source in_turn = {{key + "_in_turn", title + "in turn", unit,
-                             "Modelled time if the stages run one after the other: the sum of their times.", kTime},
-                            pointer + "/in_turn"};
-    place = std::next(sources.insert(std::next(place), {at_once, on_cores, in_turn}));
+    for (const TimeKind& kind : kTimes)
+      place = sources.insert(std::next(place), {{key + "_" + kind.key, title + kind.title, unit,
+                                                 "Modelled time. " + std::string(kind.meaning), kTime},
+                                                pointer + "/" + kind.key});
   }
   add_energy(sources, report, energy_unit);
   return sources;

@@ -1,41 +1,27 @@
 #!/usr/bin/env python3
 """Tests of `beampipe figure`: figure_test.py PROGRAM PACKAGE_FOLDER"""
-import pathlib
 import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 
-PROGRAM, PACKAGES = sys.argv[1:3]
-sys.path.insert(0, PACKAGES)
+sys.path.insert(0, sys.argv[2])
 
 import numpy
 
 import beampipe
 from beampipe import figures
+from in_folder import InFolder
 
 
-class Figure(unittest.TestCase):
+class Figure(InFolder):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         for scene in ("fence", "bars"):
             cls.run_program("make", scene, "--triangles", "3000", "--width", "96", "--height", "54", "-o", f"{scene}.json")
             cls.run_program("compare", f"{scene}.json", "-t", "beam", "msaa:2,8", "--ladder", "1,2,4,8", "-o", scene)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
-
-    @classmethod
-    def run_program(cls, *arguments, fails=None):
-        found = subprocess.run([PROGRAM, *arguments], cwd=cls.folder, capture_output=True, text=True)
-        if (fails or 0) != found.returncode:
-            raise AssertionError(f"{arguments}: exit {found.returncode}\n{found.stderr}")
-        return found.stderr if fails else found.stdout
 
     def test_the_same_results_give_the_same_bytes(self):
         for ending in ("svg", "pdf", "png"):

@@ -12,12 +12,13 @@ import threading
 import time
 import unittest
 
-PROGRAM, PACKAGES = sys.argv[1:3]
+PACKAGES = sys.argv[2]
 sys.path.insert(0, PACKAGES)
 
 import numpy
 
 import beampipe
+from in_folder import InFolder
 
 SIZE = 16  # px
 
@@ -90,27 +91,17 @@ class Closed(unittest.TestCase):
         self.assertEqual(str(beampipe.equivalent_rate(2, ladder)), "< 1")
 
 
-class Program(unittest.TestCase):
+class Program(InFolder):
     """What the program does, without files."""
 
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.trace = beampipe.make("fence", triangles=3000, width=61, height=37, frames=2, pan=(0.3, 0.1))
         cls.trace.save(cls.folder / "fence.json")
         cls.specs = ["beam:pool=60", "msaa:8", "taa:4"]
         cls.run_program("compare", "fence.json", "-t", *cls.specs, "--metric", "mae", "--ladder", "1,4,16", "-o", "out")
         cls.report = beampipe.Report(cls.folder / "out")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
-
-    @classmethod
-    def run_program(cls, *arguments):
-        found = subprocess.run([PROGRAM, *arguments], cwd=cls.folder, check=True, capture_output=True, text=True)
-        return found.stdout
 
     def test_scenes_are_those_of_make(self):
         self.run_program("make", "fence", "--triangles", "3000", "--width", "61", "--height", "37", "--frames", "2", "--pan",

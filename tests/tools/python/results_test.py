@@ -1,37 +1,27 @@
 #!/usr/bin/env python3
 """Tests of the package's reading of results: results_test.py PROGRAM PACKAGE_FOLDER EXAMPLE"""
 import os
-import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
-PROGRAM, MODULES, EXAMPLE = sys.argv[1:4]
+MODULES, EXAMPLE = sys.argv[2:4]
 sys.path.insert(0, MODULES)
 
 import numpy
 
 import beampipe
+from in_folder import InFolder
 
 
-class Module(unittest.TestCase):
+class Module(InFolder):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.run_program("make", "fence", "--triangles", "3000", "--width", "61", "--height", "37", "--frames", "2", "--pan",
                         "0.3,0.1", "-o", "fence.json")
         cls.run_program("compare", "fence.json", "-t", "beam", "msaa:8", "-o", "out")
         cls.report = beampipe.Report(cls.folder / "out")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
-
-    @classmethod
-    def run_program(cls, *arguments):
-        subprocess.run([PROGRAM, *arguments], cwd=cls.folder, check=True, capture_output=True)
 
     def test_techniques_in_the_order_of_the_report(self):
         self.assertEqual(self.report.techniques, ["beam", "msaa:8", "reference"])

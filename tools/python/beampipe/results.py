@@ -22,7 +22,8 @@ class Rate:
     """An equivalent MSAA rate (EMR): samples per pixel.
 
     is_lower_bound: it is more than `samples`, the last rung; is_upper_bound: it is less than `samples`, the first.
-    does_not_converge: there is none, because the ladder falls no more. low, high: how far unevenness leaves it open.
+    does_not_converge: there is none, because the ladder falls no more. low, high: its range, about a standard deviation
+    to each side, as far as it is known.
     """
     samples: float
     is_lower_bound: bool = False
