@@ -100,7 +100,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"z3 has no option 'layers'; it has shape", {"z3:layers=3"}},
       {"shape must be 32x2, 32x3 or 128x3", {"z3:shape=64x3"}},
       {"alpha has no options", {"alpha:1"}},
-      {"reference has no options", {"reference:64"}},
+      {"reference has no option '64'; it has samples and set", {"reference:64"}},
       {"deferred has no options", {"deferred:"}},
       {acaa_rates, {"acaa", "acaa:512"}},
       {"double must be none, stencil or saturate", {"acaa:8,double=yes"}},

@@ -126,7 +126,7 @@ TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
   const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
                                         "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
   for (const std::string& spec : example_specs()) {
-    if (spec == "reference") continue;  // its samples are in no memory
+    if (spec.starts_with("reference")) continue;  // its samples are in no memory
     std::set<std::uint64_t> written;
     std::size_t early = 0, found = 0;
     for (const Recorded& request : record(spec, random_trace(52, 40, 150, 5), run).requests) {
