@@ -54,7 +54,7 @@ void Bin::finish(std::vector<glm::vec4> picture) {
   picture_ = std::move(picture);
   if (models_memory() && keeps_pixels_on_chip())
     for (float& bytes : pixel_counter("bytes")) bytes += static_cast<float>(kPictureBytes);
-  stage(StageId::resolve).writes("picture", tile.pixels() * kPictureBytes);
+  if (resolves()) stage(StageId::resolve).writes("picture", tile.pixels() * kPictureBytes);
 }
 
 const ZOrder& Bin::z_order() {

@@ -113,6 +113,9 @@ class Bin {
   // that it did not charge.
   void render(const std::function<void(Bin&)>& by);
 
+  // Does the technique have that stage? If not, it draws into the picture in memory.
+  bool resolves() const { return find_counters(stages_, {StageId::resolve}) != nullptr; }
+
   // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory. Throws
   // std::logic_error if there is one already.
   void finish(std::vector<glm::vec4> picture);

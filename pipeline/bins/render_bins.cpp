@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "pipeline/bins/bands.h"
@@ -21,6 +22,17 @@ namespace {
 
 TileGrid tile_grid(const FrameContext& context, int tile_size) {
   return {context.frame, context.run.tile_size > 0 ? context.run.tile_size : tile_size};
+}
+
+// Throws std::runtime_error if memory is modelled without bins, and the plan cannot do without.
+TileGrid bin_grid(const FrameContext& context, const BinPlan& plan, int bin_size) {
+  const MemoryParameters& memory = context.run.memory;
+  if (memory.modelled && !memory.binned) {
+    if (plan.framebuffer.needs_bins) throw std::runtime_error("the technique needs bins; the memory system has none");
+    const auto side = static_cast<int>(std::max(context.frame.width, context.frame.height));
+    return {context.frame, side + side % 2};
+  }
+  return plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
 }
 
 // All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
@@ -208,17 +220,19 @@ class FrameRecorder {
     add(empty.bin, tile, index, empty.has_counts, empty.color != color_);
   }
 
-  FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
+  // `bins_in_work`: at the same time.
+  FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes, std::uint64_t bins_in_work) {
     for (StageCounters& stage : result_.stages)
       for (const StageCounters* const of_pass : {&pass.setup, &pass.raster})
         for (int i = 0; stage.stage.id == of_pass->stage.id && i < passes(stage.stage.pass); ++i) stage += *of_pass;
     if (trace_) repeat_geometry();
     charge_texture_dram();
-    charge_kept_in_l2();
+    charge_kept_in_l2(bins_in_work);
     const std::uint64_t triangles = context_.triangles.triangles.size();
-    result_.buffers = {
-        {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
-        {"bin_lists", list_bytes}};
+    if (context_.run.memory.binned)
+      result_.buffers = {
+          {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
+          {"bin_lists", list_bytes}};
     for (const auto& [name, bytes] : buffer_peaks_) result_.buffers.push_back({name, bytes, true});
     return std::move(result_);
   }
@@ -279,10 +293,10 @@ class FrameRecorder {
   }
 
   // L2 holds what the bins in work keep in memory, as far as it has room. What is beyond that moves to and from DRAM.
-  void charge_kept_in_l2() {
+  void charge_kept_in_l2(std::uint64_t bins_in_work) {
     const MemoryParameters& memory = context_.run.memory;
-    for (std::size_t first = 0; first < kept_in_l2_.size(); first += memory.bins_in_work()) {
-      const std::size_t end = std::min(first + memory.bins_in_work(), kept_in_l2_.size());
+    for (std::size_t first = 0; first < kept_in_l2_.size(); first += bins_in_work) {
+      const std::size_t end = std::min(first + bins_in_work, kept_in_l2_.size());
       std::uint64_t held = 0;
       for (std::size_t bin = first; bin < end; ++bin) held += kept_in_l2_[bin].peak_bytes;
       result_.cache_reach.add({.l2 = held});
@@ -348,7 +362,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   const FrameInput& run = context.run;
   const Framebuffer framebuffer = context.has_blending() ? plan.framebuffer.with_translucent() : plan.framebuffer;
   const int bin_size = framebuffer.bin_size_on(run.memory);
-  const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
+  const TileGrid grid = bin_grid(context, plan, bin_size);
   const FrameSinks& sinks = context.sinks;
   if (sinks.weights) sinks.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   if (sinks.histories) sinks.histories->assign(run.pixels->size(), {});
@@ -393,7 +407,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
-  FrameResult result = recorder.finish(pass, list_bytes);
+  FrameResult result = recorder.finish(pass, list_bytes, framebuffer.bins_in_work(run.memory));
   const auto in_memory = [&](const Framebuffer& of) {
     return std::uint64_t{bytes_per_pixel(of.in_memory(run.memory))} * context.frame.width * context.frame.height;
   };

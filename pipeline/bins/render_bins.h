@@ -42,7 +42,7 @@ using BinRenderer = std::function<void(Bin&)>;
 
 // `render` is called for every bin of the frame (but see BinPlan::empty_bins_differ), on any thread. vertex_setup runs
 // once in each geometry pass, and the raster stage reads every setup triangle in each pass (from memory: each bin reads
-// those of its list).
+// those of its list). Throws std::runtime_error if the technique needs bins and the modelled memory system has none.
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render);
 
 // Runs a stage that reads whole frames and makes the pixels of one tile at a time, after all bins are finished. Adds

@@ -1,6 +1,7 @@
 #include "pipeline/memory/framebuffer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace beampipe {
@@ -48,11 +49,16 @@ bool Framebuffer::is_on_chip(const MemoryParameters& memory) const {
   return wants_chip(memory) && on_chip_bytes_per_pixel() * side * side <= memory.on_chip_bytes;
 }
 
+std::uint64_t Framebuffer::bins_in_work(const MemoryParameters& memory) const {
+  const double pixels = std::pow(bin_size_on(memory), 2);
+  return memory.cores * std::uint64_t{memory.bins_held(is_on_chip(memory) ? pixels * on_chip_bytes_per_pixel() : 0, pixels)};
+}
+
 MemoryParameters Framebuffer::memory_of_bin(const MemoryParameters& memory, std::size_t bins) const {
   MemoryParameters of_bin = memory;
   of_bin.framebuffer = is_on_chip(memory) ? Place::on_chip : Place::in_memory;
   if (!finds_no_room(memory)) return of_bin;
-  const std::uint64_t sharing = std::clamp<std::uint64_t>(bins, 1, memory.bins_in_work());
+  const std::uint64_t sharing = std::clamp<std::uint64_t>(bins, 1, bins_in_work(memory));
   const std::uint64_t least = std::uint64_t{memory.rop.ways} * memory.rop.line_bytes;
   of_bin.rop.bytes = static_cast<std::uint32_t>(std::max(memory.rop.bytes / sharing, least));
   return of_bin;

@@ -30,11 +30,15 @@ struct Framebuffer {
   std::vector<Surface> translucent = {};
   Place place = Place::in_memory;  // on the machine that the technique is made for
   int bin_size = kBinSize;         // the technique's pixels on each side of a bin, even
+  bool needs_bins = true;          // else each triangle may be drawn over the whole frame before the next one
 
   // That, or those of the memory system if they are smaller. Where pixels are on chip, half of that, and so on, until
   // as many bins fit as a core works on at a time, or bins are as small as they may be. If not even one of these fits,
   // pixels are in memory, and bins are not made smaller.
   int bin_size_on(const MemoryParameters& memory) const;
+
+  // On all cores, at the same time.
+  std::uint64_t bins_in_work(const MemoryParameters& memory) const;
 
   // With all surfaces of a frame with translucent triangles.
   Framebuffer with_translucent() const;

@@ -14,22 +14,23 @@ constexpr ArrayName kBinLists{"bin_lists"};
 void move_setup(const MemorySystem& memory, std::uint64_t vertex_bytes, std::size_t triangles,
                 std::uint64_t surface_bytes, StageCounters& counters) {
   stream(memory, DramAccess::read, {"meshes", false}, vertex_bytes, counters);
-  stream(memory, DramAccess::write, {kSetupArray, false}, triangles * sizeof(SetupTriangle), counters);
-  stream(memory, DramAccess::write, {kAttributesArray, false}, triangles * sizeof(FlatAttributes), counters);
-  stream(memory, DramAccess::write, {"surfaces", false}, surface_bytes, counters);
+  const MemorySystem stored = of_triangles(memory);
+  stream(stored, DramAccess::write, {kSetupArray, false}, triangles * sizeof(SetupTriangle), counters);
+  stream(stored, DramAccess::write, {kAttributesArray, false}, triangles * sizeof(FlatAttributes), counters);
+  stream(stored, DramAccess::write, {"surfaces", false}, surface_bytes, counters);
 }
 
 void write_list(const MemorySystem& memory, const TriangleList& list, StageCounters& counters) {
-  stream(memory, DramAccess::write, kBinLists, list.size() * sizeof list[0], counters);
+  stream(of_triangles(memory), DramAccess::write, kBinLists, list.size() * sizeof list[0], counters);
 }
 
 void read_list(const MemorySystem& memory, const TriangleList& list, StageCounters& counters) {
-  stream(memory, DramAccess::read, kBinLists, list.size() * sizeof list[0], counters);
+  stream(of_triangles(memory), DramAccess::read, kBinLists, list.size() * sizeof list[0], counters);
 }
 
 void read_bin(const MemorySystem& memory, const TriangleList& list, StageCounters& counters) {
   read_list(memory, list, counters);
-  RecordsInOrder setup(memory, kSetupArray, sizeof(SetupTriangle));
+  RecordsInOrder setup(of_triangles(memory), kSetupArray, sizeof(SetupTriangle));
   for (const std::uint32_t triangle : list) setup.read(triangle, counters);
 }
 
@@ -43,11 +44,11 @@ ListRanks::ListRanks(const TriangleList& list)
 }
 
 TriangleFetches::TriangleFetches(const MemorySystem& memory, const TriangleList& list, const SurfaceShader* shader)
-    : modelled_(memory.modelled),
+    : modelled_(memory.stores_triangles()),
       shader_(shader && !shader->is_flat() ? shader : nullptr),
       ranks_(modelled_ ? list : TriangleList{}),
       places_(modelled_ ? places_of(memory, list) : Places{}),
-      lines_(memory, places_.end, std::move(places_.lines)) {}
+      lines_(of_triangles(memory), places_.end, std::move(places_.lines)) {}
 
 void TriangleFetches::place_records(const TriangleList& list, std::string_view array, std::uint32_t record_bytes,
                                     std::uint32_t line_bytes, std::vector<std::uint32_t>& offsets, Places& places) {

@@ -1,6 +1,7 @@
 // Memory traffic of geometry. The frame is binned as a whole: vertex_setup writes setup triangles and their attributes
 // as two arrays in primitive order, and each bin reads those of its list. Triangles that are not flat have, instead of
-// flat attributes, planes and three vertices: two more arrays.
+// flat attributes, planes and three vertices: two more arrays. Without bins all this stays on chip, and only vertices
+// and indices are read.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +19,12 @@ namespace beampipe {
 // Arrays of the frame.
 inline constexpr const char* kSetupArray = "setup_triangles";
 inline constexpr const char* kAttributesArray = "attributes";
+
+// The memory system, which models nothing if triangles stay on chip.
+inline MemorySystem of_triangles(MemorySystem memory) {
+  memory.modelled = memory.stores_triangles();
+  return memory;
+}
 
 // One run of vertex_setup: it reads `vertex_bytes` of vertices and indices once, and writes so many triangles and
 // `surface_bytes` of what triangles with materials have besides.
@@ -154,7 +161,7 @@ class AttributesInOrder {
  public:
   // `fetches` must outlive it. Null: all triangles are flat.
   explicit AttributesInOrder(const MemorySystem& memory, TriangleFetches* fetches = nullptr)
-      : records_(memory, kAttributesArray, sizeof(FlatAttributes)), fetches_(fetches) {}
+      : records_(of_triangles(memory), kAttributesArray, sizeof(FlatAttributes)), fetches_(fetches) {}
 
   template <class Fragment>
   void read(const std::vector<Fragment>& fragments, StageCounters& counters) {

@@ -1,7 +1,8 @@
 // Every parameter of the modelled memory system, with its source.
 //
 // The model follows a binning rasterizer, which draws all triangles of one bin in order and then goes on to the next
-// bin. Every class of surface has a cache, which is empty at the start of a bin. At the end of each pass over the frame
+// bin. (Without bins the frame is the only one.) Every class of surface has a cache, which is empty at the start of a
+// bin. At the end of each pass over the frame
 // dirty lines are written back, because the next pass starts with another bin. Requests that hit their cache go no
 // further; misses and evictions go to L2, and those of L2 go to DRAM. Data that passes from stage to stage stays in
 // queues on chip: it counts as logical bytes only. Textures are what bins share, so L2 keeps texels from bin to bin.
@@ -101,10 +102,29 @@ struct MemoryParameters {
   // is composed while the next one is fetched.
   std::uint32_t on_chip_bytes = 96 * 1024, bins_per_core = 2, cores = 80;
 
+  // Are triangles sorted into bins? If not, each goes from setup to the raster on chip and is drawn over the whole
+  // frame before the next one, and no triangle is looked at again. Only some techniques can do that
+  // (Framebuffer::needs_bins).
+  bool binned = true;
+
   // The most pixels on each side of a bin, at most kBinSize. Techniques whose bins are smaller keep them.
   std::uint32_t bin_pixels = kBinSize;
 
-  std::uint64_t bins_in_work() const { return std::uint64_t{cores} * bins_per_core; }
+  bool stores_triangles() const { return modelled && binned; }
+
+  // The most bins of so many pixels that a core works on at a time: `bins_per_core` of 32 x 32, and of smaller ones as
+  // many as have the same number of pixels. 0 pixels: the size is not known.
+  std::uint32_t most_bins(double pixels) const {
+    constexpr double kPixels = kBinSize * kBinSize;
+    return static_cast<std::uint32_t>(bins_per_core * std::max(kPixels / (pixels > 0 ? pixels : kPixels), 1.0));
+  }
+
+  // How many bins a core holds: as many of these as it has room for, and at least one. `bytes`: what the pixels of a
+  // bin take on chip.
+  std::uint32_t bins_held(double bytes, double pixels) const {
+    const double room = std::max(on_chip_bytes / std::max(bytes, 1.0), 1.0);
+    return static_cast<std::uint32_t>(std::min(room, static_cast<double>(most_bins(pixels))));
+  }
 
   // That hold so many bytes in a row.
   std::uint64_t sectors(std::uint64_t bytes) const {

@@ -42,7 +42,7 @@ Framebuffer msaa_framebuffer(const MsaaOptions& options) {
   std::vector<Surface> surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
                                    {"color", times(format_of(options).name, n), n * color_bytes(options)}};
   if (options.motion) surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
-  return {.surfaces = surfaces, .bin_size = bin_size(options.samples)};
+  return {.surfaces = surfaces, .bin_size = bin_size(options.samples), .needs_bins = options.motion};
 }
 
 // How far each pixel moved; 0 if its surface was behind the eye.
@@ -59,8 +59,9 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options, const S
   History& history = job.run.history ? *job.run.history : first;
   std::optional<FrameMotion> motion;
   if (options.motion) motion.emplace(context, history);
-  BinPlan plan{.stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve},
-               .framebuffer = msaa_framebuffer(options),
+  const Framebuffer framebuffer = msaa_framebuffer(options);
+  BinPlan plan{.stages = forward_stages(framebuffer, options.samples, job.run.memory),
+               .framebuffer = framebuffer,
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
   if (options.motion) plan.stages.push_back(StageId::motion);
@@ -88,6 +89,12 @@ Technique technique_of(const MsaaOptions& options, const Sampling& sampling) {
 
 }  // namespace
 
+std::vector<StageId> forward_stages(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory) {
+  std::vector<StageId> stages = {StageId::sample_raster, StageId::shade, StageId::depth_test};
+  if (samples > 1 || framebuffer.is_on_chip(memory)) stages.push_back(StageId::resolve);
+  return stages;
+}
+
 DepthTestUnit forward_surface(Bin& bin, const Sampling& sampling, const MsaaOptions& options) {
   const auto first_pass =
       options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
@@ -114,8 +121,13 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
     if (!options.prepass) depth_test.test(fragments);
   });
   depth_test.count_bytes();
-  depth_test.read_colors(bin.stage(StageId::resolve));
-  return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);
+  if (!bin.resolves()) {
+    StageCounters nothing_is_moved;
+    return depth_test.resolve_samples(options.at, nothing_is_moved, options.space);
+  }
+  const BinStage resolving = bin.stage(StageId::resolve);
+  depth_test.read_colors(resolving);
+  return depth_test.resolve_samples(options.at, resolving.timed(), options.space);
 }
 
 Technique msaa_at(const std::vector<glm::ivec2>& places) {

@@ -36,11 +36,14 @@ struct MsaaOptions {
 // corner. It has no spec. Throws SpecError.
 Technique msaa_at(const std::vector<glm::ivec2>& places);
 
+// The stages of a bin. One sample in memory is the picture's pixel already; all others are resolved.
+std::vector<StageId> forward_stages(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory);
+
 // The depth test of forward shading, with colours. `sampling` must outlive it.
 DepthTestUnit forward_surface(Bin& bin, const Sampling& sampling, const MsaaOptions& options);
 
 // Draws and shades all triangles, with a depth pre-pass if there is one, and resolves the samples. Returns the picture.
-// Stages: sample_raster, shade, depth_test, resolve.
+// Stages: forward_stages().
 std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthTestUnit& depth_test);
 
 }  // namespace beampipe

@@ -26,20 +26,6 @@ ShadingRules rules_of(TaaShading shading) {
   return {};
 }
 
-std::vector<StageId> stages_of(TaaShading shading) {
-  switch (shading) {
-    case TaaShading::visibility:
-      return {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
-              StageId::light,         StageId::resolve,    StageId::motion};
-    case TaaShading::deferred:
-      return {StageId::sample_raster, StageId::depth_test, StageId::shade,
-              StageId::light,         StageId::resolve,    StageId::motion};
-    case TaaShading::forward:
-      return {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve, StageId::motion};
-  }
-  return {};
-}
-
 Framebuffer taa_framebuffer(TaaShading shading) {
   Framebuffer framebuffer = visibility_framebuffer();
   if (shading == TaaShading::deferred) framebuffer = deferred_framebuffer();
@@ -48,6 +34,22 @@ Framebuffer taa_framebuffer(TaaShading shading) {
   framebuffer.surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
   framebuffer.surfaces.push_back({"history", "RGBA16F x 2", 16, true});  // the last one, and the one being written
   return framebuffer;
+}
+
+std::vector<StageId> stages_of(TaaShading shading, const MemoryParameters& memory) {
+  std::vector<StageId> forward = forward_stages(taa_framebuffer(shading), 1, memory);
+  switch (shading) {
+    case TaaShading::visibility:
+      return {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
+              StageId::light,         StageId::resolve,    StageId::motion};
+    case TaaShading::deferred:
+      return {StageId::sample_raster, StageId::depth_test, StageId::shade,
+              StageId::light,         StageId::resolve,    StageId::motion};
+    case TaaShading::forward:
+      forward.push_back(StageId::motion);
+      return forward;
+  }
+  return {};
 }
 
 // Jittering the projection is the same as sampling at another position of the pixel.
@@ -83,7 +85,7 @@ FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
   TemporalFrame over_time(context, {options.blend});
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
-  const BinPlan plan{.stages = stages_of(options.shading),
+  const BinPlan plan{.stages = stages_of(options.shading, job.run.memory),
                      .framebuffer = taa_framebuffer(options.shading),
                      .has_prepass = options.shading != TaaShading::visibility,
                      .empty_bins_differ = true};

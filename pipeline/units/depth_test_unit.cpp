@@ -103,9 +103,9 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
   if (!translucent.empty()) blend_fragments(translucent);
 }
 
-std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving, ResolveSpace space) const {
+std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, StageCounters& resolving, ResolveSpace space) const {
   const SamplePlaces places(bin_, sampling_, at);
-  return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
+  return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving,
                  {static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
                   [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); }, space});
 }

@@ -66,7 +66,7 @@ class DepthTestUnit {
   void read_colors(const BinStage& by) { memory_.read_color(by.counters); }
 
   // The mean colour of each pixel's samples.
-  std::vector<glm::vec4> resolve_samples(ShadeAt at, const BinStage& resolving,
+  std::vector<glm::vec4> resolve_samples(ShadeAt at, StageCounters& resolving,
                                          ResolveSpace space = ResolveSpace::linear) const;
 
   // Adds the bytes that tests and writes have moved to the bin's counter. Once, at the end.

@@ -1,5 +1,6 @@
 // Where the pixels of a bin are: on chip only if they fit, and what moves to and from DRAM in either place.
 
+#include "stages/data/setup_triangle.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 #include "tests/stages/surface_scene.h"
@@ -69,6 +70,79 @@ TEST(Framebuffer, BinsWithoutRoomShareTheCachesOfRops) {
   EXPECT_EQ(msaa.memory_of_bin(memory, 1000).rop.bytes, all);
   memory.cores = 1000;
   EXPECT_EQ(beam.memory_of_bin(memory, 5000).rop.bytes, 1024u);
+}
+
+// Two layers over 64 x 64 pixels, the farther first, with 4 KiB of caches. A layer of colours has 16 KiB; a layer of
+// depths has 64 blocks, and one plane in each is a sector. In bins of 32 x 32 pixels each pixel is written once. Without
+// bins both layers are, and the second one reads the depths of the first. Triangles stay on chip.
+TEST(Framebuffer, WithoutBinsEachTriangleGoesOverTheWholeFrame) {
+  const auto covering = [](double depth) {
+    return PixelSpaceTriangle{{{-10, -10, depth}, {200, -10, depth}, {-10, 200, depth}}, glm::vec3(0.5f)};
+  };
+  const Trace trace = pixel_trace(64, 64, {covering(0.75), covering(0.25)});
+  MemoryParameters memory;
+  memory.rop.bytes = 4096;
+  const FrameResult binned = render_with("msaa:1,color=rgba8", trace, memory);
+  memory.binned = false;
+  const FrameResult whole = render_with("msaa:1,color=rgba8", trace, memory);
+  EXPECT_EQ(binned.image.rgba, whole.image.rgba);
+  EXPECT_EQ(stage_of(binned, "depth_test").dram_bytes, 16384u + 64 * 32);
+  EXPECT_EQ(stage_of(whole, "depth_test").dram_bytes, 2 * 16384u + 3 * 64 * 32);
+  EXPECT_EQ(stage_of(whole, "sample_raster").dram_bytes, 0u);
+  EXPECT_EQ(stage_of(whole, "shade").dram_bytes, 0u);
+  const auto stored = [&](std::size_t bytes) { return memory.sectors(2 * bytes) * memory.sector_bytes; };
+  EXPECT_EQ(stage_of(whole, "vertex_setup").dram_bytes, stage_of(binned, "vertex_setup").dram_bytes -
+                                                            stored(sizeof(SetupTriangle)) -
+                                                            stored(sizeof(FlatAttributes)));
+  EXPECT_GT(stage_of(whole, "vertex_setup").dram_bytes, 0u) << "vertices are read";
+  EXPECT_EQ(bytes_of(whole, "setup_triangles"), 0u);
+  EXPECT_EQ(whole.bin_operations.size(), 1u);
+}
+
+// Behind caches a surface of one sample is the picture already. On chip it is written there from the bin.
+TEST(Framebuffer, OneSampleInMemoryIsThePicture) {
+  MemoryParameters memory;
+  for (const char* spec : {"msaa:1", "msaa:1,prepass", "taa:8,shading=forward"}) {
+    memory.framebuffer = Place::in_memory;
+    for (const StageCounters& stage : render_with(spec, covered_bin(), memory).stages)
+      EXPECT_NE(stage.stage, StageId::resolve) << spec;
+    memory.framebuffer = Place::on_chip;
+    const StageCounters stored = stage_of(render_with(spec, covered_bin(), memory), "resolve");
+    EXPECT_EQ(stored.dram_bytes, kBinPixels * kPictureBytes) << spec;
+    EXPECT_EQ(stored.items_in, kBinPixels) << spec;
+  }
+}
+
+TEST(Framebuffer, TechniquesThatNeedBinsSayThatThereAreNone) {
+  MemoryParameters memory;
+  memory.binned = false;
+  for (const char* spec : {"beam", "casav", "msaa:4,motion", "deferred"}) {
+    SCOPED_TRACE(spec);
+    EXPECT_THROW(render_with(spec, covered_bin(), memory), std::runtime_error);
+  }
+  EXPECT_NO_THROW(render_with("reference", covered_bin(), memory));
+  memory.modelled = false;
+  EXPECT_NO_THROW(render_with("beam", covered_bin(), memory)) << "bins change no picture";
+}
+
+TEST(Framebuffer, CoresHoldAsManyBinsAsHaveRoom) {
+  MemoryParameters memory;
+  memory.on_chip_bytes = 1000, memory.bins_per_core = 4;
+  EXPECT_EQ(memory.bins_held(100, 1024), 4u) << "not more than a core works on";
+  EXPECT_EQ(memory.bins_held(250, 1024), 4u);
+  EXPECT_EQ(memory.bins_held(251, 1024), 3u);
+  EXPECT_EQ(memory.bins_held(1000, 1024), 1u);
+  EXPECT_EQ(memory.bins_held(5000, 1024), 1u) << "whatever a report says";
+  EXPECT_EQ(memory.bins_held(0, 0), 4u) << "of a size that is not known";
+  EXPECT_EQ(memory.bins_held(100, 256), 10u) << "sixteen of them have as many pixels as four of 32 x 32";
+  EXPECT_EQ(memory.bins_held(50, 256), 16u);
+  EXPECT_EQ(memory.bins_held(5, 64), 64u);
+  EXPECT_EQ(memory.bins_held(5, 4096), 4u) << "larger ones count as well";
+  memory.cores = 3;
+  const Framebuffer msaa = parse_technique("msaa:8").framebuffer;
+  EXPECT_EQ(msaa.bins_in_work(memory), 12u);
+  memory.bin_pixels = 16;
+  EXPECT_EQ(msaa.bins_in_work(memory), 48u);
 }
 
 // What a bin needs of its part of the caches not to evict anything, the whole caches need as often as they are shared.

@@ -43,8 +43,7 @@ TEST(HandWorked, TriangleMsaaWithAndWithoutCompression) {
                  {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
                   {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, kTriangleRaster, kTriangleRaster, kTriangleRaster},
                   {"shade", 6, 6, 6 * 38, 6 * 6, 32, 32, 32},
-                  {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, tested, tested},
-                  {"resolve", 64, 64, 384, 384, 768, 768, 768}},
+                  {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, tested, tested}},
                  compression);
   }
 }
@@ -107,8 +106,7 @@ TEST(HandWorked, QuadsMsaa) {
       {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160 + 352 + 128, 160 + 352 + 128, 160 + 352 + 128},
        {"sample_raster", 4, 32, 4 * 88 + (4 * 13 + 2) * 4, 32 * 10 + 2 * 4, 2 * 32 + 352, 2 * 32 + 352, 2 * 32 + 352},
        {"shade", 32, 32, 32 * 38, 32 * 6, 128, 128, 128},
-       {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384, 96 + 384},
-       {"resolve", 64, 64, 384, 384, 768, 768, 768}});
+       {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384, 96 + 384}});
 }
 
 TEST(HandWorked, QuadsBeam) {

@@ -13,6 +13,7 @@
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
 #include "traces/files/trace_io.h"
@@ -119,6 +120,12 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.hardware = read_hardware(arguments.hardware);
   plan.shading_options = shading_options(arguments.hardware);
   plan.options.memory = plan.hardware.memory = memory_of(arguments, plan.hardware);
+  if (const auto conflict = find_conflict(plan.options.memory))
+    throw UsageError("--" + std::string(conflict->name) + " " + conflict->found + ": expected " + conflict->expected);
+  for (const Technique& technique : plan.techniques)
+    if (lacks_bins(plan.options.memory, technique))
+      throw UsageError("-t " + technique.spec + ": expected techniques that work without bins, such as msaa:8, because " +
+                       plan.hardware.named + " has none");
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});

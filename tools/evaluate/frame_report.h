@@ -68,10 +68,15 @@ struct FrameReport {
     return static_cast<double>(a_buffer_peak_bytes) + peak_bytes_of(kTranslucentLayer);
   }
 
-  // What the frame's modelled time depends on. This must outlive it.
-  FrameWork work() const {
-    return {stages, open_pixel_bytes(), static_cast<double>(bin_pixels), bin_operations, bin_invocations};
+  BinSize bin_size() const { return {open_pixel_bytes(), static_cast<double>(bin_pixels)}; }
+
+  // By a core, at a time.
+  std::uint32_t bins_held(const MemoryParameters& memory) const {
+    return memory.bins_held(bin_size().bytes, bin_size().pixels);
   }
+
+  // What the frame's modelled time depends on. This must outlive it.
+  FrameWork work() const { return {stages, bin_size(), bin_operations, bin_invocations}; }
 
   double peak_bytes_of(std::string_view buffer) const;  // 0 if there is none of this name
 };

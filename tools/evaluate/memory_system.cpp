@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "pipeline/memory/dram_log.h"
+#include "tools/evaluate/known_specs.h"
 
 namespace beampipe {
 namespace {
@@ -79,8 +80,10 @@ std::vector<MemoryParameter> all_parameters() {
   place("framebuffer", "", "where the pixels of a bin are while it is drawn", &Memory::framebuffer, place_form());
   place("on_chip_bytes", "bytes", "the memory that a core has on chip for the pixels of bins", &Memory::on_chip_bytes,
         integer(1, kMostOnChip));
-  place("bins_per_core", "bins", "how many bins a core works on at a time", &Memory::bins_per_core, integer(1, 64));
+  place("bins_per_core", "bins", "how many bins of 32 x 32 pixels a core works on at a time; of smaller ones, more", &Memory::bins_per_core, integer(1, 64));
   place("cores", "cores", "how many cores work on bins", &Memory::cores, integer(1, 65536));
+  place("binned", "", "whether triangles are sorted into bins; if not, each is drawn over the whole frame at once",
+        &Memory::binned, form::boolean());
   place("bin_pixels", "px", "the most pixels on each side of a bin; techniques whose bins are smaller keep them",
         &Memory::bin_pixels, form::power_of_two(8, kBinSize));
   return all;
@@ -105,7 +108,7 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory) {
     if (cache.line_bytes >= memory.sector_bytes && cache.line_bytes <= most) return std::nullopt;
     return MemoryConflict{name,
                           "1 to 8 sectors, " + std::to_string(memory.sector_bytes) + " to " + std::to_string(most),
-                          cache.line_bytes};
+                          std::to_string(cache.line_bytes)};
   };
   const auto room = [&](const char* name, const CacheParameters& cache) -> std::optional<MemoryConflict> {
     const std::uint32_t least = cache.ways * cache.line_bytes;
@@ -113,12 +116,18 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory) {
     return MemoryConflict{name,
                           "room for one set of " + std::to_string(cache.ways) + " ways x " +
                               std::to_string(cache.line_bytes) + " bytes, at least " + std::to_string(least),
-                          cache.bytes};
+                          std::to_string(cache.bytes)};
   };
   for (const auto& conflict : {line("line_bytes", memory.l2), line("rop_line_bytes", memory.rop),
                                room("l1_bytes", memory.l1), room("l2_bytes", memory.l2), room("rop_bytes", memory.rop)})
     if (conflict) return conflict;
+  if (!memory.binned && memory.framebuffer == Place::on_chip)
+    return MemoryConflict{"framebuffer", "in-memory or by-technique where nothing is binned", kOnChip};
   return std::nullopt;
+}
+
+bool lacks_bins(const MemoryParameters& memory, const Technique& technique) {
+  return memory.modelled && !memory.binned && technique.framebuffer.needs_bins && !is_reference(technique.spec);
 }
 
 namespace {
@@ -132,7 +141,7 @@ Form<MemoryParameters> parameters_form() {
     const auto value = at.find(conflict->name);  // else what it conflicts with was set
     (value ? *value : at)
         .fail((value ? "" : std::string(conflict->name) + " of ") + conflict->expected,
-              std::to_string(conflict->found));
+              conflict->found);
   });
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/memory/parameters.h"
+#include "pipeline/technique.h"
 #include "traces/files/json_form.h"
 
 namespace beampipe {
@@ -28,9 +29,12 @@ Json parameters_json(const MemoryParameters& memory);
 struct MemoryConflict {
   const char* name;  // of the parameter that would have to change
   std::string expected;
-  std::uint32_t found;
+  std::string found;
 };
 std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory);
+
+// Does the technique need bins where the system has none?
+bool lacks_bins(const MemoryParameters& memory, const Technique& technique);
 
 // Sets the parameters that are members of the object `values`, by name. Throws TraceError, one line that names the key,
 // if there is no such parameter, if a value is out of range, or if the values do not fit together.

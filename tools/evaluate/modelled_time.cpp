@@ -156,27 +156,44 @@ bool has_stage(const std::vector<StageCounters>& stages, StageId id) {
 
 // What a stage needs to know of its frame.
 struct FrameKind {
-  double bin_bytes = 0, bin_pixels = 0;
+  BinSize bin;
+  double bins = 1;  // that have work
   bool has_light = false;
   bool has_rops = true;  // the colours that are shaded go to ROPs
 };
 
 bool is_of_bins(const Stage& stage) { return stage.id != StageId::vertex_setup; }
 
-// Those of bins are at most the pixels of the bins that cores hold.
-double threads_in_flight(const Hardware& hardware, const Stage& stage, const FrameKind& frame, double registers) {
+// Does the stage take what belongs to a pixel in order, so that a pixel has one thread?
+bool works_by_pixel(StageId id) {
+  const StageGroup group = info_of(id).group;
+  return group == StageGroup::visibility || group == StageGroup::picture || id == StageId::a_buffer ||
+         id == StageId::windows;
+}
+
+// That a stage starts in the mean bin.
+double threads_of_bin(const StageCounters& stage, const FrameKind& frame) {
+  const bool is_shading = info_of(stage.stage.id).group == StageGroup::shading;
+  const double items = static_cast<double>(is_shading ? stage.lanes_issued : stage.items_in) / frame.bins;
+  return works_by_pixel(stage.stage.id) ? std::min(items, frame.bin.pixels) : items;
+}
+
+// Those of bins are at most those of the bins that cores hold.
+double threads_in_flight(const Hardware& hardware, const StageCounters& stage, const FrameKind& frame,
+                         double registers) {
   double of_core = hardware.rates.at("core_threads");
   if (registers > 0) of_core = std::min(of_core, std::floor(hardware.rates.at("core_registers") / registers));
-  if (is_of_bins(stage) && frame.bin_pixels > 0)
-    of_core = std::min(of_core, frame.bin_pixels * bins_held(hardware.memory, frame.bin_bytes));
+  const MemoryParameters& memory = hardware.memory;
+  if (is_of_bins(stage.stage) && memory.binned && frame.bin.pixels > 0)
+    of_core = std::min(of_core, threads_of_bin(stage, frame) * memory.bins_held(frame.bin.bytes, frame.bin.pixels));
   return hardware.memory.cores * std::max(of_core, 1.0);
 }
 
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
                                        const StageCounters& unpriced, const FrameKind& frame) {
   double registers = 0;
-  StageWork stage{with_costs(hardware, unpriced, frame.has_light, registers), frame.bin_bytes > 0};
-  stage.threads = threads_in_flight(hardware, stage.stage, frame, registers);
+  StageWork stage{with_costs(hardware, unpriced, frame.has_light, registers), frame.bin.bytes > 0};
+  stage.threads = threads_in_flight(hardware, stage, frame, registers);
   stage.sector_bytes = hardware.memory.sector_bytes;
   const Rates rates(hardware);
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
@@ -264,16 +281,12 @@ std::vector<std::string> unit_names() {
 }
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, double bin_bytes, double bin_pixels) {
-  return times_of(hardware, implementation, stage, {bin_bytes, bin_pixels});
-}
-
-std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes) {
-  const double room = std::max(memory.on_chip_bytes / std::max(bin_bytes, 1.0), 1.0);
-  return static_cast<std::uint32_t>(std::min(room, static_cast<double>(memory.bins_per_core)));
+                                         const StageCounters& stage, const BinSize& bin, double bins) {
+  return times_of(hardware, implementation, stage, {bin, bins});
 }
 
 BinSpread bin_spread(const Hardware& hardware, const FrameWork& work) {
+  if (!hardware.memory.binned) return {};
   const double of_invocation = hardware.material.operations + hardware.light.operations;
   std::vector<double> bins(work.bin_operations.begin(), work.bin_operations.end());
   for (std::size_t i = 0; i < std::min(bins.size(), work.bin_invocations.size()); ++i)
@@ -297,9 +310,11 @@ std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vec
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work) {
-  const FrameKind frame{work.bin_bytes, work.bin_pixels, has_stage(work.stages, StageId::light),
+  const auto idle = std::count(work.bin_operations.begin(), work.bin_operations.end(), 0u);
+  const double bins = static_cast<double>(work.bin_operations.size()) - static_cast<double>(idle);
+  const FrameKind frame{work.bin, std::max(bins, 1.0), has_stage(work.stages, StageId::light),
                         has_rops(implementation, work.stages)};
-  const double held = bins_held(hardware.memory, work.bin_bytes);
+  const double held = hardware.memory.bins_held(work.bin.bytes, work.bin.pixels);
   ModelledTime time;
   std::map<std::string, double> all, before;
   BinTimes of_bins;

@@ -1,9 +1,10 @@
 // Modelled time: the work of each stage, divided by the rates of described hardware.
 //
 // A stage takes as long as its busiest unit. Cores hold several bins at a time, as many as their memory on chip has
-// room for; the threads of a bin are its pixels. Where threads in flight are too few to hide how long operations, loads
-// and sectors take, the unit `latency` is the busiest. The model knows no divergence within warps and no driver, so
-// that real frames take longer. Ratios say more than times.
+// room for. The threads of a bin are its pixels in stages that take the fragments of a pixel in order, and in others
+// its items. Where threads in flight are too few to hide how long operations, loads and sectors take, the unit
+// `latency` is the busiest. The model knows no divergence within warps and no driver, so that real frames take longer.
+// Ratios say more than times.
 #pragma once
 
 #include <cstdint>
@@ -17,25 +18,27 @@
 
 namespace beampipe {
 
+// The bins of a frame.
+struct BinSize {
+  double bytes = 0;   // that the pixels of a bin take on chip; 0: they are in memory
+  double pixels = 0;  // of the largest bin; 0: not known, threads fill the cores
+};
+
 // What a frame's time depends on.
 struct FrameWork {
   const std::vector<StageCounters>& stages;
-  double bin_bytes = 0;                                 // that the pixels of a bin take on chip; 0: they are in memory
-  double bin_pixels = 0;                                // of the largest bin; 0: not known, threads fill the cores
+  BinSize bin = {};
   std::span<const std::uint64_t> bin_operations = {};   // as in FrameResult
   std::span<const std::uint64_t> bin_invocations = {};  // the same
 };
 
 // Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...), as if it were the only
-// one of its frame.
+// one of its frame, in so many bins.
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, double bin_bytes = 0, double bin_pixels = 0);
-
-// How many bins of that size a core has room for, at most as many as it works on at a time, and at least one.
-std::uint32_t bins_held(const MemoryParameters& memory, double bin_bytes);
+                                         const StageCounters& stage, const BinSize& bin = {}, double bins = 1);
 
 // How the work of cores is spread over bins: operations in stages that shaders can do, and those that the hardware adds
-// to each invocation. All are 1 if there is no work.
+// to each invocation. All are 1 if there is no work, and where nothing is binned.
 struct BinSpread {
   double busiest_core = 1;  // its work over the mean of all cores. Bins start in their order, on the core free first
   double p99 = 1;           // work of the bin at rank ceil(99 n / 100), over the mean of bins

@@ -64,7 +64,7 @@ EnergyRow energy_row(const Report& report, const TechniqueReport& result, const 
         quotient_of(hardware, work_of(hardware, implementation, result), work_of(hardware, implementation, *over));
   const FrameReport first = result.frames.front();
   if (const double bytes = first.open_pixel_bytes())
-    row.on_chip_bytes = bytes * bins_held(report.memory, bytes) * report.memory.cores;
+    row.on_chip_bytes = bytes * first.bins_held(report.memory) * report.memory.cores;
   for (const StageCounters& stage : first.stages)
     if (const auto units = implementation.units.find(stage.stage.id); units != implementation.units.end())
       for (const auto& [unit, rate] : kComparing)

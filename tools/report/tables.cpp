@@ -332,7 +332,7 @@ void add_room(const ReportFile& report, const Json& result, Json& record) {
     if (buffer.at("name") != kOpenPixels) continue;
     const double bytes = buffer.at("peak_bytes").get<double>();
     record["bin_bytes"] = bytes;
-    record["bins_held"] = bins_held(parameters, bytes);
+    record["bins_held"] = parameters.bins_held(bytes, frames.front().value("bin_pixels", 0.0));
   }
   double geometry = 0;
   for (const Json& frame : frames)

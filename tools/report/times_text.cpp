@@ -123,9 +123,11 @@ std::string no_room_text(const MemoryParameters& memory, const TechniqueReport& 
 }
 
 std::string room_text(const Report& report, const TechniqueReport& result) {
-  const double bytes = result.frames.front().open_pixel_bytes();
+  const FrameReport& first = result.frames.front();
+  const double bytes = first.open_pixel_bytes();
   if (bytes == 0) return "in memory" + no_room_text(report.memory, result);
-  return format("%.1f KiB, %u of %u bins", bytes / 1024, bins_held(report.memory, bytes), report.memory.bins_per_core);
+  return format("%.1f KiB, %u of %u bins", bytes / 1024, first.bins_held(report.memory),
+                report.memory.most_bins(first.bin_size().pixels));
 }
 
 std::string quotient_text(const Quotient& quotient) {
@@ -185,9 +187,9 @@ Json times_json(const Report& report, const TimesOptions& options) {
         {"busiest_core", row.spread.busiest_core}, {"p99", row.spread.p99}, {"most", row.spread.most}};
     of_row["stages"] = stages;
     of_row["busiest_units"] = units;
-    const double bytes = row.result.frames.front().open_pixel_bytes();
-    of_row["bin_bytes"] = bytes;
-    if (bytes > 0) of_row["bins_held"] = bins_held(report.memory, bytes);
+    const FrameReport& first = row.result.frames.front();
+    of_row["bin_bytes"] = first.open_pixel_bytes();
+    if (first.open_pixel_bytes() > 0) of_row["bins_held"] = first.bins_held(report.memory);
     if (row.quotient) {
       of_row["ratio"] = row.quotient->value;
       of_row["ratio_interval"] = row.quotient->interval.json();

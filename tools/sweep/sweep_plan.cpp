@@ -191,7 +191,7 @@ class PlanReader {
       for (const std::size_t size : sizes)
         for (const std::size_t technique : techniques)
           for (const System& system : systems) {
-            const std::size_t cell = add_cell({trace, size, technique, system.memory});
+            const std::size_t cell = add_cell({trace, size, technique, system.memory}, grid);
             for (const std::size_t each : system.hardware) {
               add_rows(cell, each, axes);
               if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kTableRows);
@@ -200,9 +200,13 @@ class PlanReader {
     if (plan_.hardware.size() > kMostHardware) fail_limit(grid, kMostHardware, kKinds);
   }
 
-  std::size_t add_cell(const SweepCell& cell) {
+  std::size_t add_cell(const SweepCell& cell, const JsonCursor& grid) {
     const auto [found, is_new] = cell_numbers_.emplace(cell, plan_.cells.size());
-    if (is_new) plan_.cells.push_back(cell);
+    if (!is_new) return found->second;
+    const std::string& spec = plan_.techniques[cell.technique];
+    if (lacks_bins(plan_.memory[cell.memory], parse_technique(spec)))
+      grid.fail("techniques that work without bins, because a memory system has none", spec);
+    plan_.cells.push_back(cell);
     return found->second;
   }
 
@@ -221,7 +225,7 @@ class PlanReader {
 
   std::size_t read_technique(const JsonCursor& at) {
     const std::string spec = at.string();
-    if (parse_technique(spec).spec == kReferenceSpec)
+    if (is_reference(parse_technique(spec).spec))
       at.fail("a technique other than the reference, which costs nothing on hardware");
     return index_in(plan_.techniques, spec);
   }
@@ -259,7 +263,7 @@ class PlanReader {
         if (name == parameter.key) parameter.read(value, memory);
     if (const auto conflict = find_conflict(memory))
       grid.fail(std::string(kMemorySystem) + "." + conflict->name + " of " + conflict->expected,
-                std::to_string(conflict->found));
+                conflict->found);
     return memory;
   }
 

@@ -19,6 +19,7 @@ FERMI_EXPORT = ("SMs x 8 bytes: each hands on 2 pixels of 32 bits per clock (NVI
                 "choice: half as many of 64 bits")
 KEPLER_EXPORT = "choice: 8 SMX x 4 pixels of 32 bits, as many as the 32 ROPs take"
 BEHARDWARE = "BeHardware, article 795: GF104 in blocks of each SM, which run at twice the clock"
+KANTER = "David Kanter, Tile-based rasterization in Nvidia GPUs (Real World Tech, 2016): from Maxwell on"
 FERMI_THREADS = (1536, 32768, 11), "CUDA C Programming Guide, compute capability 2.x; 22 clocks of lanes at twice the clock"
 KEPLER_THREADS = (2048, 65536, 11), "CUDA C Programming Guide, compute capability 3.x"
 ROP = "x 16/3 depth samples: the 48 of GF100 write 256 that compress (NVIDIA, quoted by PC Games Hardware)"
@@ -45,11 +46,8 @@ def part(name, mhz, sms, sm, of_threads, rops, export, rasters, gb_per_s, l2_kib
     hardware |= {"name": name, "clock_mhz": mhz}
     hardware.pop("energy")
     hardware["memory_system"] = {
-        "parameters": {"l2_bytes": l2_kib * 1024, "l2_ways": 16, "on_chip_bytes": 49152, "bins_per_core": 2,
-                       "cores": sms},
-        "sources": {"l2_bytes": sources["l2"], "l2_ways": "choice",
-                    "on_chip_bytes": "48 KB of shared memory in each SM (Fermi whitepaper)",
-                    "bins_per_core": "choice, as titan_v", "cores": sources["sms"]}}
+        "parameters": {"l2_bytes": l2_kib * 1024, "l2_ways": 16, "cores": sms, "binned": False},
+        "sources": {"l2_bytes": sources["l2"], "l2_ways": "choice", "cores": sources["sms"], "binned": KANTER}}
     sourced = ("export_bytes_per_clk", "raster_pixels_per_clk")
     hardware["ranges"] = {rate: [rates.get(rate, was) * end / was for end in ends]
                           for rate, ends in hardware["ranges"].items() if rate not in sourced

@@ -31,14 +31,15 @@ TEST(MemorySystem, EveryParameterArrives) {
   expected.l1 = {16384, 4, 64}, expected.l2 = {1048576, 16, 64}, expected.rop = {65536, 4, 256};
   expected.compression = false;
   expected.plane_bytes = 10;
-  expected.framebuffer = Place::on_chip;
+  expected.framebuffer = Place::in_memory;
   expected.on_chip_bytes = 131072, expected.bins_per_core = 3, expected.cores = 7;
+  expected.binned = false;
   expected.bin_pixels = 16;
   const std::string file = "m.json";
   const Json json = parse_json_text(R"({"sector_bytes": 64, "line_bytes": 64, "l1_bytes": 16384, "l1_ways": 4,
     "l2_bytes": 1048576, "l2_ways": 16, "rop_bytes": 65536, "rop_ways": 4, "rop_line_bytes": 256, "compression": false,
-    "plane_bytes": 10, "framebuffer": "on-chip", "on_chip_bytes": 131072, "bins_per_core": 3, "cores": 7,
-    "bin_pixels": 16})",
+    "plane_bytes": 10, "framebuffer": "in-memory", "on_chip_bytes": 131072, "bins_per_core": 3, "cores": 7,
+    "binned": false, "bin_pixels": 16})",
                                     file);
   MemoryParameters memory;
   set_parameters(memory, JsonCursor(json, file));
@@ -71,6 +72,8 @@ TEST(MemorySystem, ErrorsNameTheKey) {
   EXPECT_NE(refusal("\"l2_byte\": 65536").find("(did you mean 'l2_bytes'?)"), std::string::npos);
   EXPECT_EQ(refusal("\"sector_bytes\": 48"),
             "m.json: /parameters/sector_bytes: expected a power of two from 32 to 128, found 48");
+  EXPECT_EQ(refusal("\"binned\": false, \"framebuffer\": \"on-chip\""),
+            "m.json: /parameters/framebuffer: expected in-memory or by-technique where nothing is binned, found on-chip");
   EXPECT_EQ(refusal("\"l2_bytes\": 65536"), "m.json: /sources: expected the key \"l2_bytes\", found none");
   EXPECT_EQ(refusal("\"l2_bytes\": 65536", "\"l2_bytes\": \"\""),
             "m.json: /sources/l2_bytes: expected where the value is from, or that it is a choice, found nothing");

@@ -140,7 +140,7 @@ TEST(ModelledTime, BytesOfPixelsMoveWhereThePixelsAre) {
     StageCounters counters{id};
     counters.bytes_read = 20480;
     if (unit == std::string("shader")) counters.bytes_read += 1000, counters.texture_bytes = 1000;
-    return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, bin_bytes).at(unit));
+    return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, {bin_bytes}).at(unit));
   };
   EXPECT_NEAR(of(1, StageId::compose, "composer", 0), 10, 1e-6);
   EXPECT_NEAR(of(1, StageId::compose, "composer", 1024), 2, 1e-6);
@@ -230,19 +230,50 @@ TEST(ModelledTime, ThreadsWaitForOperationsLoadsAndSectors) {
 TEST(ModelledTime, FewerBinsHideLessLatency) {
   Hardware titan = titan_v();
   StageCounters counters{StageId::compose};
+  counters.items_in = 1000000;
   counters.ops.bit = 1638400;
   const auto latency = [&](double kib, double pixels) {
-    return clocks(titan, unit_times(titan, titan.implementations.at(0), counters, kib * 1024, pixels).at("latency"));
+    return clocks(titan, unit_times(titan, titan.implementations.at(0), counters, {kib * 1024, pixels}).at("latency"));
   };
   EXPECT_NEAR(latency(0, 0), 40, 1e-9);
   EXPECT_NEAR(latency(48, 256), 160, 1e-9);
   EXPECT_NEAR(latency(49, 256), 320, 1e-9);
   EXPECT_NEAR(latency(48, 1024), 40, 1e-9);
-  EXPECT_NEAR(latency(0, 256), 160, 1e-9) << "bins in memory: as many as a core works on";
+  EXPECT_NEAR(latency(0, 256), 40, 1e-9) << "in memory eight have room, with as many pixels as two of 32 x 32";
   titan.memory.bins_per_core = 6;
-  EXPECT_NEAR(latency(24, 256), 80, 1e-9) << "four of six";
+  EXPECT_NEAR(latency(24, 256), 80, 1e-9) << "four have room";
   counters.stage = StageId::vertex_setup;
   EXPECT_NEAR(latency(49, 256), 40, 1e-9) << "not of bins";
+}
+
+// 12800 fragments in 10 bins of 16 x 16 pixels, of which a core holds two: of a bin 1280 are shaded, so that the 2048
+// threads of a core are all in flight, but 256 are composed, one of each pixel. Helper lanes are threads, too.
+TEST(ModelledTime, ThreadsAreFragmentsOrPixels) {
+  const Hardware titan = titan_v();
+  const auto latency = [&](StageId id, std::uint64_t items, std::uint64_t lanes) {
+    StageCounters counters{id};
+    counters.items_in = items, counters.lanes_issued = lanes;
+    counters.ops.bit = 1638400;
+    const auto times = unit_times(titan, titan.implementations.at(0), counters, {48 * 1024, 256}, 10);
+    return clocks(titan, times.at("latency"));
+  };
+  EXPECT_NEAR(latency(StageId::beam_fragment, 12800, 0), 40, 1e-9);
+  EXPECT_NEAR(latency(StageId::compose, 12800, 0), 160, 1e-9);
+  EXPECT_NEAR(latency(StageId::compose, 640, 0), 640, 1e-9) << "a fragment in each fourth pixel";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 2560, 0), 160, 1e-9);
+  EXPECT_NEAR(latency(StageId::shade, 1280, 2560), 160, 1e-9) << "every second is a helper";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 1, 0), 40 * 2048, 1e-9) << "a core has a thread, at least";
+}
+
+// Without bins the cores share a frame's triangles evenly, and none waits for a bin.
+TEST(ModelledTime, WithoutBinsNothingIsScheduled) {
+  Hardware titan = titan_v();
+  titan.memory.binned = false;
+  StageCounters compose{StageId::compose};
+  compose.items_in = 1, compose.ops.bit = 1638400;
+  EXPECT_NEAR(clocks(titan, unit_times(titan, titan.implementations.at(0), compose, {0, 256}).at("latency")), 40, 1e-9);
+  const std::vector<std::uint64_t> one_bin = {7};
+  EXPECT_EQ(bin_spread(titan, {{}, {}, one_bin}).busiest_core, 1);
 }
 
 // 65536 registers of a core are those of 512 threads of 128 registers, a quarter of 2048.
@@ -268,7 +299,7 @@ TEST(ModelledTime, BinsOfACoreOverlapTheirStages) {
   shade.bytes_read = shade.texture_bytes = 5120 * 40;
   const std::vector<StageCounters> stages = {compose, shade};
   const auto on_cores = [&](double kib) {
-    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, kib * 1024}).on_cores_ms);
+    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, {kib * 1024}}).on_cores_ms);
   };
   EXPECT_NEAR(on_cores(96), 80, 1e-9);
   EXPECT_NEAR(on_cores(48), 40, 1e-9);
@@ -278,24 +309,16 @@ TEST(ModelledTime, BinsOfACoreOverlapTheirStages) {
 TEST(ModelledTime, LatencyOfABinIsNotShared) {
   const Hardware titan = titan_v();
   StageCounters compose{StageId::compose};
+  compose.items_in = 64;
   compose.ops.bit = 80 * 64 * 100;  // 100 operations of each of the 64 threads of a bin, on 80 cores: 400 clocks
   const std::vector<StageCounters> stages = {compose};
   const auto on_cores = [&](double kib) {
-    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, kib * 1024, 64}).on_cores_ms);
+    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, {kib * 1024, 64}}).on_cores_ms);
   };
   EXPECT_NEAR(on_cores(96), 400, 1e-9);
   EXPECT_NEAR(on_cores(48), 200, 1e-9) << "two bins wait at the same time";
 }
 
-TEST(ModelledTime, BinsHeldAreThoseWithRoom) {
-  MemoryParameters memory;
-  memory.on_chip_bytes = 1000, memory.bins_per_core = 4;
-  EXPECT_EQ(bins_held(memory, 100), 4u) << "not more than a core works on";
-  EXPECT_EQ(bins_held(memory, 250), 4u);
-  EXPECT_EQ(bins_held(memory, 251), 3u);
-  EXPECT_EQ(bins_held(memory, 1000), 1u);
-  EXPECT_EQ(bins_held(memory, 5000), 1u) << "whatever a report says";
-}
 
 // Two cores, mean 8. In their order: 5 and 1 start; the 3 starts at 1 on the second core, the 4 at 4 there, and the
 // last 3 at 5 on the first: ends at 8 both.
@@ -304,7 +327,7 @@ TEST(ModelledTime, BinsStartInTheirOrderOnTheCoreThatIsFreeFirst) {
   const auto busiest = [](const Bins& bins, std::uint32_t cores) {
     Hardware hardware = titan_v();
     hardware.memory.cores = cores;
-    return bin_spread(hardware, {{}, 0, 0, bins}).busiest_core;
+    return bin_spread(hardware, {{}, {}, bins}).busiest_core;
   };
   EXPECT_EQ(busiest({5, 1, 3, 4, 3}, 2), 1.0);
   EXPECT_EQ(busiest({1, 3, 3, 4, 5}, 2), 9.0 / 8) << "1, then 3 and 5 until 9; 3 and 4 until 7";
@@ -319,11 +342,11 @@ TEST(ModelledTime, BinsStartInTheirOrderOnTheCoreThatIsFreeFirst) {
 TEST(ModelledTime, SpreadOfBins) {
   std::vector<std::uint64_t> operations(200), invocations(200, 2);
   std::iota(operations.rbegin(), operations.rend(), 1);
-  const BinSpread bare = bin_spread(titan_v(), {{}, 0, 0, operations, invocations});
+  const BinSpread bare = bin_spread(titan_v(), {{}, {}, operations, invocations});
   EXPECT_DOUBLE_EQ(bare.p99, 198 / 100.5);
   EXPECT_DOUBLE_EQ(bare.most, 200 / 100.5);
   const Hardware priced = with_shading_costs(titan_v(), {40, 0, 0}, {10, 0, 0});
-  EXPECT_DOUBLE_EQ(bin_spread(priced, {{}, 0, 0, operations, invocations}).most, 300 / 200.5);
+  EXPECT_DOUBLE_EQ(bin_spread(priced, {{}, {}, operations, invocations}).most, 300 / 200.5);
 }
 
 // Of 80 cores one has twice the work of the mean. Geometry comes first: 1000 clocks of triangles. Then bins take 2 x 20
@@ -337,7 +360,7 @@ TEST(ModelledTime, CoresWaitForTheirBusiestButShareDram) {
   const auto scheduled = [&](double dram_clocks) {
     compose.dram_bytes = static_cast<std::uint64_t>(dram_clocks * 448.7 * 0.77);
     const std::vector<StageCounters> stages = {setup, compose};
-    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, 0, 0, bins}).on_cores_ms);
+    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, {}, bins}).on_cores_ms);
   };
   EXPECT_NEAR(scheduled(0), 1000 + 40, 1e-6);
   EXPECT_NEAR(scheduled(20), 1000 + 40, 1e-6);
