@@ -7,8 +7,10 @@ The parts are described as changes of the built-in Titan V class: its implementa
 measurement here uses.
 """
 import argparse
+import concurrent.futures
 import csv
 import json
+import os
 import pathlib
 import subprocess
 
@@ -133,10 +135,14 @@ def main():
         runs.setdefault(row["folder"], set()).add(row["technique"])
         if row["over_technique"]:
             runs.setdefault(row["over_folder"] or row["folder"], set()).add(row["over_technique"])
-    for run, specs in runs.items():
+
+    def draw(run):
         hardware, scene = run.split("/")
-        subprocess.run([options.program, "run", folder / f"{scene}.json", "-t", *sorted(specs), "--hardware",
+        subprocess.run([options.program, "run", folder / f"{scene}.json", "-t", *sorted(runs[run]), "--hardware",
                         folder / f"{hardware}.json", "-o", folder / run, "--force"], check=True)
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:  # without bins a run has one thread
+        list(pool.map(draw, runs))
     (folder / "measured.csv").write_text(options.measured.read_text())
 
 

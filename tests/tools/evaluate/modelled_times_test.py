@@ -14,6 +14,9 @@ import unittest
 
 NO_COSTS = {kind: {"operations": 0, "fetches": 0, "registers": 0} for kind in ("material", "light")}
 OF_CORES = {"shader", "texture", "latency"}
+SHADING = {"sample_select", "material_sort", "shade", "light"}
+BY_PIXEL = {"a_buffer", "windows", "compose", "depth_test", "blend", "stencil_test", "accumulate", "motion", "dilate",
+            "temporal", "resolve"}
 SPECS = ["beam", "beam:order=sorted", "casav", "msaa:8", "msaa:8,prepass", "acaa:8", "deferred", "taa:4", "dvm"]
 
 
@@ -78,6 +81,13 @@ def priced(stage, shading, has_light):
     return stage, max([cost["registers"] for cost in costs], default=0)
 
 
+def threads_of_bin(stage, pixels, bins):
+    """Of the mean bin: its items, of which those of a pixel are taken in order by some stages."""
+    name = stage["stage"].removeprefix("prepass_")
+    items = stage["lanes_issued" if name in SHADING else "items_in"] / bins
+    return min(items, pixels) if name in BY_PIXEL else items
+
+
 def on_busiest_core(operations, cores):
     """The work of the busiest core over the mean: each bin starts on the core that is free first."""
     free_at = [0] * cores
@@ -104,7 +114,9 @@ class ModelledTimesTest(unittest.TestCase):
         for result in report["results"]:
             frame = result["frames"][0]
             bin_bytes = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels")
-            held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), memory["bins_per_core"]), 1)
+            most = memory["bins_per_core"] * max(1024 // frame["bin_pixels"], 1)
+            held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), most), 1)
+            bins = max(sum(operations > 0 for operations in frame["bin_operations"]), 1)
             for way, implementation in hardware["implementations"].items():
                 before, of_bins, in_turn, alone = {}, {}, 0, 0
                 units_of = {stage["stage"]: implementation["units"][stage["stage"].removeprefix("prepass_")]
@@ -121,7 +133,7 @@ class ModelledTimesTest(unittest.TestCase):
                     if registers:
                         threads = min(threads, rates["core_registers"] // registers)
                     if not is_geometry:
-                        threads = min(threads, frame["bin_pixels"] * held)
+                        threads = max(min(threads, held * threads_of_bin(stage, frame["bin_pixels"], bins)), 1)
                     if {"shader", "shading"} & set(units):
                         units = units + ["latency"]
                     times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0, memory, threads * memory["cores"])
