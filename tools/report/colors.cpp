@@ -13,10 +13,14 @@
 namespace beampipe {
 namespace {
 
-// Tableau's ten colours, which most people can tell apart, then lighter versions of them.
-constexpr std::array kColors = {"#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1",
-                                "#9c755f", "#ff9da7", "#79706e", "#a0cbe8", "#ffbe7d", "#ffb6b4", "#a8dcd9",
-                                "#8cd17d", "#f7e5a1", "#d4a6c8", "#d7b5a6", "#fcd9de", "#bab0ac"};
+// Stages have Tableau's colours (stages/cost/stage.cpp), so techniques have others: those of Okabe and Ito, "Color
+// Universal Design" (2008), without black, and three more. Lighter ones follow.
+constexpr std::array kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
+                                "#56b4e9", "#6a3d9a", "#8b4513", "#c2b800", "#5c6b73"};
+
+// Paul Tol's "muted" scheme (2021).
+constexpr std::array<const char*, kErrorCauses.size()> kCauseColors = {"#cc6677", "#332288", "#ddcc77", "#117733",
+                                                                       "#88ccee", "#882255", "#999933"};
 
 constexpr const char* kUnknown = "#888888";
 
@@ -31,7 +35,10 @@ std::string lighter(const std::string& color) {
 
 }  // namespace
 
-std::string color_at(std::size_t index) { return kColors[index % kColors.size()]; }
+std::string color_at(std::size_t index) {
+  const std::string color = kColors[index % kColors.size()];
+  return index / kColors.size() % 2 == 0 ? color : lighter(color);
+}
 
 std::string technique_color(const std::vector<std::string>& specs, std::string_view spec) {
   if (is_msaa(spec)) return color_at(0);
@@ -52,7 +59,7 @@ std::string stage_color(std::string_view name) {
 
 std::string cause_color(std::string_view cause) {
   const auto* const found = std::find(kErrorCauses.begin(), kErrorCauses.end(), cause);
-  return found == kErrorCauses.end() ? kUnknown : color_at(static_cast<std::size_t>(found - kErrorCauses.begin()) + 1);
+  return found == kErrorCauses.end() ? kUnknown : kCauseColors[static_cast<std::size_t>(found - kErrorCauses.begin())];
 }
 
 }  // namespace beampipe
