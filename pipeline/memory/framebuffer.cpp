@@ -51,7 +51,8 @@ bool Framebuffer::is_on_chip(const MemoryParameters& memory) const {
 
 std::uint64_t Framebuffer::bins_in_work(const MemoryParameters& memory) const {
   const double pixels = std::pow(bin_size_on(memory), 2);
-  return memory.cores * std::uint64_t{memory.bins_held(is_on_chip(memory) ? pixels * on_chip_bytes_per_pixel() : 0, pixels)};
+  return memory.cores *
+         std::uint64_t{memory.bins_held(is_on_chip(memory) ? pixels * on_chip_bytes_per_pixel() : 0, pixels)};
 }
 
 MemoryParameters Framebuffer::memory_of_bin(const MemoryParameters& memory, std::size_t bins) const {

@@ -73,8 +73,8 @@ TEST(Framebuffer, BinsWithoutRoomShareTheCachesOfRops) {
 }
 
 // Two layers over 64 x 64 pixels, the farther first, with 4 KiB of caches. A layer of colours has 16 KiB; a layer of
-// depths has 64 blocks, and one plane in each is a sector. In bins of 32 x 32 pixels each pixel is written once. Without
-// bins both layers are, and the second one reads the depths of the first. Triangles stay on chip.
+// depths has 64 blocks, and one plane in each is a sector. In bins of 32 x 32 pixels each pixel is written once.
+// Without bins both layers are, and the second one reads the depths of the first. Triangles stay on chip.
 TEST(Framebuffer, WithoutBinsEachTriangleGoesOverTheWholeFrame) {
   const auto covering = [](double depth) {
     return PixelSpaceTriangle{{{-10, -10, depth}, {200, -10, depth}, {-10, 200, depth}}, glm::vec3(0.5f)};
@@ -91,9 +91,9 @@ TEST(Framebuffer, WithoutBinsEachTriangleGoesOverTheWholeFrame) {
   EXPECT_EQ(stage_of(whole, "sample_raster").dram_bytes, 0u);
   EXPECT_EQ(stage_of(whole, "shade").dram_bytes, 0u);
   const auto stored = [&](std::size_t bytes) { return memory.sectors(2 * bytes) * memory.sector_bytes; };
-  EXPECT_EQ(stage_of(whole, "vertex_setup").dram_bytes, stage_of(binned, "vertex_setup").dram_bytes -
-                                                            stored(sizeof(SetupTriangle)) -
-                                                            stored(sizeof(FlatAttributes)));
+  EXPECT_EQ(
+      stage_of(whole, "vertex_setup").dram_bytes,
+      stage_of(binned, "vertex_setup").dram_bytes - stored(sizeof(SetupTriangle)) - stored(sizeof(FlatAttributes)));
   EXPECT_GT(stage_of(whole, "vertex_setup").dram_bytes, 0u) << "vertices are read";
   EXPECT_EQ(bytes_of(whole, "setup_triangles"), 0u);
   EXPECT_EQ(whole.bin_operations.size(), 1u);

@@ -124,8 +124,9 @@ RunPlan make_plan(const RunArguments& arguments) {
     throw UsageError("--" + std::string(conflict->name) + " " + conflict->found + ": expected " + conflict->expected);
   for (const Technique& technique : plan.techniques)
     if (lacks_bins(plan.options.memory, technique))
-      throw UsageError("-t " + technique.spec + ": expected techniques that work without bins, such as msaa:8, because " +
-                       plan.hardware.named + " has none");
+      throw UsageError("-t " + technique.spec +
+                       ": expected techniques that work without bins, such as msaa:8, because " + plan.hardware.named +
+                       " has none");
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});

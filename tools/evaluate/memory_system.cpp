@@ -80,7 +80,8 @@ std::vector<MemoryParameter> all_parameters() {
   place("framebuffer", "", "where the pixels of a bin are while it is drawn", &Memory::framebuffer, place_form());
   place("on_chip_bytes", "bytes", "the memory that a core has on chip for the pixels of bins", &Memory::on_chip_bytes,
         integer(1, kMostOnChip));
-  place("bins_per_core", "bins", "how many bins of 32 x 32 pixels a core works on at a time; of smaller ones, more", &Memory::bins_per_core, integer(1, 64));
+  place("bins_per_core", "bins", "how many bins of 32 x 32 pixels a core works on at a time; of smaller ones, more",
+        &Memory::bins_per_core, integer(1, 64));
   place("cores", "cores", "how many cores work on bins", &Memory::cores, integer(1, 65536));
   place("binned", "", "whether triangles are sorted into bins; if not, each is drawn over the whole frame at once",
         &Memory::binned, form::boolean());
@@ -140,8 +141,7 @@ Form<MemoryParameters> parameters_form() {
     if (!conflict) return;
     const auto value = at.find(conflict->name);  // else what it conflicts with was set
     (value ? *value : at)
-        .fail((value ? "" : std::string(conflict->name) + " of ") + conflict->expected,
-              conflict->found);
+        .fail((value ? "" : std::string(conflict->name) + " of ") + conflict->expected, conflict->found);
   });
 }
 

@@ -262,8 +262,7 @@ class PlanReader {
       for (const MemoryParameter& parameter : memory_parameters())
         if (name == parameter.key) parameter.read(value, memory);
     if (const auto conflict = find_conflict(memory))
-      grid.fail(std::string(kMemorySystem) + "." + conflict->name + " of " + conflict->expected,
-                conflict->found);
+      grid.fail(std::string(kMemorySystem) + "." + conflict->name + " of " + conflict->expected, conflict->found);
     return memory;
   }
 

@@ -72,8 +72,9 @@ TEST(MemorySystem, ErrorsNameTheKey) {
   EXPECT_NE(refusal("\"l2_byte\": 65536").find("(did you mean 'l2_bytes'?)"), std::string::npos);
   EXPECT_EQ(refusal("\"sector_bytes\": 48"),
             "m.json: /parameters/sector_bytes: expected a power of two from 32 to 128, found 48");
-  EXPECT_EQ(refusal("\"binned\": false, \"framebuffer\": \"on-chip\""),
-            "m.json: /parameters/framebuffer: expected in-memory or by-technique where nothing is binned, found on-chip");
+  EXPECT_EQ(
+      refusal("\"binned\": false, \"framebuffer\": \"on-chip\""),
+      "m.json: /parameters/framebuffer: expected in-memory or by-technique where nothing is binned, found on-chip");
   EXPECT_EQ(refusal("\"l2_bytes\": 65536"), "m.json: /sources: expected the key \"l2_bytes\", found none");
   EXPECT_EQ(refusal("\"l2_bytes\": 65536", "\"l2_bytes\": \"\""),
             "m.json: /sources/l2_bytes: expected where the value is from, or that it is a choice, found nothing");

@@ -319,7 +319,6 @@ TEST(ModelledTime, LatencyOfABinIsNotShared) {
   EXPECT_NEAR(on_cores(48), 200, 1e-9) << "two bins wait at the same time";
 }
 
-
 // Two cores, mean 8. In their order: 5 and 1 start; the 3 starts at 1 on the second core, the 4 at 4 there, and the
 // last 3 at 5 on the first: ends at 8 both.
 TEST(ModelledTime, BinsStartInTheirOrderOnTheCoreThatIsFreeFirst) {

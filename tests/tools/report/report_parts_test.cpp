@@ -214,7 +214,8 @@ TEST(ReportColors, EachTechniqueAndStageHasItsOwn) {
   colors.clear();
   for (const StageInfo& stage : stage_list()) EXPECT_TRUE(colors.insert(stage_color(stage.name)).second) << stage.name;
   for (std::size_t i = 0; i < 20; ++i)
-    EXPECT_TRUE(colors.insert(color_at(i)).second) << "a technique looks like a stage, or like another technique: " << i;
+    EXPECT_TRUE(colors.insert(color_at(i)).second)
+        << "a technique looks like a stage, or like another technique: " << i;
   for (const char* const cause : kErrorCauses) EXPECT_TRUE(colors.insert(cause_color(cause)).second) << cause;
   EXPECT_FALSE(colors.contains(stage_color("no such stage"))) << "a stage of the registry has no colour";
   EXPECT_FALSE(colors.contains(stage_color("prepass_depth_test"))) << "lighter";
