@@ -60,7 +60,7 @@ def rounds(program, traces, folder):
         for spec in ROUNDS:
             result = results[spec]
             measure.print_row(name(trace), f"`{spec}`", result["framebuffer_bytes_per_pixel"],
-                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['sum']:.3f}",
+                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['in_turn']:.3f}",
                               f"{result['equivalent_msaa']:.3g}")
 
 
@@ -90,7 +90,7 @@ def tiles(program, traces, folder):
             pairs = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "bin_lists") // 4
             kib = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels") / 1024
             measure.print_row(name(trace), f"`{spec}`", f"{side} x {side}", f"{kib:g}", pairs,
-                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['sum']:.3f}")
+                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['in_turn']:.3f}")
 
 
 def coverage(program, traces, folder):
@@ -102,7 +102,7 @@ def coverage(program, traces, folder):
             shade = measure.stages(results[0][spec])["shade"]
             measure.print_row(name(trace), f"`{spec}`", f"{shade['lanes_issued'] / 1e6:.2f}",
                               f"{shade['ops']['total'] / 1e6:.0f}",
-                              *(f"{times(result[spec])['sum']:.3f}" for result in results))
+                              *(f"{times(result[spec])['in_turn']:.3f}" for result in results))
 
 
 TABLES = {table.__name__: table for table in (pictures, rounds, saved, tiles, coverage)}

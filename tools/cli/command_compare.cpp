@@ -39,8 +39,6 @@ void tell_unexplained(const std::vector<std::string>& specs) {
               << list_of(specs, "and") << "\n";
 }
 
-constexpr const char* kNoCache = "none";
-
 // Pictures for later comparisons.
 struct KeptPictures {
   std::string folder;  // empty: the default one
@@ -51,9 +49,8 @@ void compare(const RunArguments& arguments, const CompareOptions& options, const
              const KeptPictures& kept, InterruptGate& gate) {
   check_pixels_per_degree(options.pixels_per_degree);
   RunPlan plan = make_plan(arguments);
-  const std::filesystem::path folder =
-      kept.folder.empty() ? default_picture_cache() : std::filesystem::path(kept.folder);
-  if (!folder.empty() && folder != kNoCache) plan.pictures = std::make_shared<PictureCache>(folder, plan.trace);
+  if (const std::filesystem::path folder = picture_cache_folder(kept.folder); !folder.empty())
+    plan.pictures = std::make_shared<PictureCache>(folder, plan.trace);
   plan.keeps_ladder = kept.ladder;
   tell_notes(plan.notes);
   std::vector<std::string> unexplained;
@@ -117,9 +114,7 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
       .between(0, 1000);
   command.add("--inspect", pixels->chosen, "X,Y of other pixels to record, in every frame");
   const auto kept = std::make_shared<KeptPictures>();
-  command.add("--reference-cache", kept->folder,
-              "the folder where pictures of the reference are kept for other runs on the same trace, or none (default: "
-              "$XDG_CACHE_HOME/beampipe/references); at most 4 GiB stay, and only this build reads them");
+  add_reference_cache(command, kept->folder);
   command.add_flag("--keep-ladder", kept->ladder,
                    "keep pictures of the MSAA ladder there, too: another --metric then needs no rendering of it");
   command.footer(kCompareFooter + technique_help());

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "tools/cli/commands.h"
+#include "tools/cli/metric_options.h"
+#include "tools/evaluate/picture_cache.h"
 #include "tools/files/output.h"
 #include "tools/report/gnuplot.h"
 #include "tools/sweep/slurm.h"
@@ -45,7 +47,7 @@ Examples:
   beampipe sweep plan.json -o out --slurm --sbatch time=2:00:00 cpus-per-task=8)";
 
 struct SweepArguments {
-  std::string plan, output, part;
+  std::string plan, output, part, reference_cache;
   int jobs = 0, threads = 0;
   std::uint32_t tasks = 0;
   std::vector<std::string> plots, sbatch;
@@ -129,8 +131,9 @@ void merge(Sweep& sweep, const std::vector<PlotColumns>& plots) {
 }
 
 void run(Sweep& sweep, const std::vector<SweepJob>& jobs, InterruptGate& gate) {
-  const SweepOutcome outcome =
-      run_jobs(sweep.plan, jobs, sweep.shelf, sweep.results, {sweep.arguments.jobs, sweep.arguments.threads}, gate);
+  const SweepOutcome outcome = run_jobs(
+      sweep.plan, jobs, sweep.shelf, sweep.results,
+      {sweep.arguments.jobs, sweep.arguments.threads, picture_cache_folder(sweep.arguments.reference_cache)}, gate);
   std::cout << "results: " << outcome.rendered << " rendered, " << outcome.shared << " the same as one of these, "
             << outcome.stored << " kept from earlier" << std::endl;
   for (const std::string& failure : outcome.failures) std::cerr << "beampipe: failed: " << failure << "\n";
@@ -157,6 +160,11 @@ void submit(Sweep& sweep, const std::vector<PlotColumns>& plots) {
   request.command = {fs::read_symlink("/proc/self/exe").string(), "sweep", fs::absolute(arguments.plan).string(), "-o",
                      sweep.output.path().string()};
   if (arguments.allow_outside) request.command.push_back("--allow-outside");
+  if (const std::string& named = arguments.reference_cache; !named.empty()) {
+    const fs::path pictures = picture_cache_folder(named);
+    request.command.insert(request.command.end(),
+                           {"--reference-cache", pictures.empty() ? named : fs::absolute(pictures).string()});
+  }
   for (const std::string& plot : arguments.plots) {
     request.merge.push_back("--plot");
     request.merge.push_back(plot);
@@ -224,6 +232,7 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
               "X,Y,BY: draw column Y of the table against column X as SVG, with a line for each value of column BY, "
               "as means over traces and sizes; one plot for each combination of what else is varied. Both axes are "
               "logarithmic. May be repeated. Needs the program gnuplot");
+  add_reference_cache(command, arguments->reference_cache);
   command.add_flag("--allow-outside", arguments->allow_outside, "allow traces to name files outside their own folder");
   Command cluster = command.add_group("On several machines, which share the output folder");
   cluster.add_flag("--slurm", arguments->slurm,

@@ -21,4 +21,10 @@ void check_pixels_per_degree(double pixels_per_degree) {
     throw UsageError(format("--pixels-per-degree: expected a number in 1..1000, found %g", pixels_per_degree));
 }
 
+void add_reference_cache(Command& command, std::string& folder) {
+  command.add("--reference-cache", folder,
+              "the folder where pictures of the reference are kept for other runs on the same trace, or none (default: "
+              "$XDG_CACHE_HOME/beampipe/references); at most 4 GiB stay, and only this build reads them");
+}
+
 }  // namespace beampipe

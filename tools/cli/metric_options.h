@@ -7,6 +7,9 @@
 
 namespace beampipe {
 
+// --reference-cache FOLDER, for picture_cache_folder().
+void add_reference_cache(Command& command, std::string& folder);
+
 // What --help says about all measures: a line for each.
 std::string measures_help();
 

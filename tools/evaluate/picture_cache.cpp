@@ -26,7 +26,8 @@ void write_file(const fs::path& path, std::string_view bytes) {
 
 }  // namespace
 
-fs::path default_picture_cache() {
+fs::path picture_cache_folder(const std::string& named) {
+  if (!named.empty()) return named == "none" ? fs::path() : fs::path(named);
   const char* const cache = std::getenv("XDG_CACHE_HOME");
   const char* const home = std::getenv("HOME");
   if (cache && *cache) return fs::path(cache) / "beampipe" / "references";

@@ -17,8 +17,9 @@
 
 namespace beampipe {
 
-// $XDG_CACHE_HOME/beampipe/references, or the same in ~/.cache; empty if neither variable is set.
-std::filesystem::path default_picture_cache();
+// The folder that the user names; if that is empty, $XDG_CACHE_HOME/beampipe/references, or the same in ~/.cache. Empty
+// for "none", and if neither variable is set.
+std::filesystem::path picture_cache_folder(const std::string& named);
 
 struct KeptPicture {
   Image image;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <tuple>
 
 #include "pipeline/bins/threads.h"
@@ -11,6 +12,7 @@
 #include "tools/evaluate/measures.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/msaa_ladder.h"
+#include "tools/evaluate/picture_cache.h"
 #include "tools/evaluate/progress.h"
 #include "tools/evaluate/render.h"
 
@@ -100,6 +102,7 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
   ladder_plan.trace = loaded->trace;
   ladder_plan.frames = shelf.info(job.trace, job.size).frames;
   ladder_plan.options = options_of(*loaded, {}, limits);
+  if (!limits.pictures.empty()) ladder_plan.pictures = std::make_shared<PictureCache>(limits.pictures, loaded->trace);
   std::uint64_t pixels = 0;
   for (const std::size_t frame : ladder_plan.frames)
     pixels += std::uint64_t{loaded->trace.frames[frame].width} * loaded->trace.frames[frame].height;
@@ -115,7 +118,7 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
   const Technique reference = parse_technique(kReferenceSpec);
   std::map<std::size_t, Image> references;
   for (const std::size_t frame : ladder_plan.frames) {
-    const Image& truth = references.emplace(frame, render_picture(reference, ladder_plan, frame, silent)).first->second;
+    const Image& truth = references.emplace(frame, kept_picture(reference, ladder_plan, frame, silent)).first->second;
     ladder.add(ladder_plan, frame, truth, silent);
     for (VariantPictures& each : pictures) {
       FrameInput options = options_of(*loaded, each.memory, limits);

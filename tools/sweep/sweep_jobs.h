@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -25,6 +26,7 @@ std::vector<SweepJob> jobs_of(const SweepPlan& plan);
 struct JobLimits {
   int threads = 1;
   std::uint64_t memory_limit = 0;  // FrameInput::memory_limit
+  std::filesystem::path pictures;  // the folder of a PictureCache for the reference; empty: none are kept
 };
 
 // An upper estimate of the bytes that a job takes besides memory_limit.

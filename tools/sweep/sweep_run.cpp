@@ -105,6 +105,7 @@ SweepOutcome run_jobs(const SweepPlan& plan, const std::vector<SweepJob>& jobs, 
                                  static_cast<int>(std::clamp<std::size_t>(jobs.size(), 1, 1024)));
   JobLimits limits;
   limits.threads = workers.threads > 0 ? workers.threads : std::max(1, cores / at_once);
+  limits.pictures = workers.pictures;
   // Half of the memory is for pairs, as in a run of one technique, and half for all else.
   limits.memory_limit = machine_memory() / 2 / static_cast<std::uint64_t>(at_once);
   MemoryBudget budget(machine_memory() / 2);

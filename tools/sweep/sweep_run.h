@@ -1,6 +1,7 @@
 // Does the jobs of a sweep, several at a time, as far as the machine has memory.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,9 @@
 namespace beampipe {
 
 struct SweepWorkers {
-  int jobs = 0;     // at a time; 0: one per processor core
-  int threads = 0;  // of each job; 0: the cores that are left to it
+  int jobs = 0;                    // at a time; 0: one per processor core
+  int threads = 0;                 // of each job; 0: the cores that are left to it
+  std::filesystem::path pictures;  // as in JobLimits
 };
 
 struct SweepOutcome {

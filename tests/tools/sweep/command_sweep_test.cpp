@@ -235,6 +235,24 @@ TEST_F(SweepTest, PartsTogetherAreTheWhole) {
   EXPECT_EQ(read_text(folder_ / "out/table.csv"), read_text(folder_ / "whole/table.csv"));
 }
 
+// The second sweep has another folder, and so nothing of its own yet.
+TEST_F(SweepTest, PicturesOfTheReferenceAreKeptForOtherSweeps) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam"],
+    "errors": true})");
+  const auto pictures = [&] {
+    std::map<std::string, std::filesystem::file_time_type> found;
+    for (const auto& file : std::filesystem::directory_iterator(folder_ / "kept"))
+      if (file.path().extension() == ".json") found[file.path().filename()] = file.last_write_time();
+    return found;
+  };
+  succeed({"sweep", path("plan.json"), "-o", path("first"), "--reference-cache", path("kept")});
+  const auto kept = pictures();
+  EXPECT_EQ(kept.size(), 1u);
+  succeed({"sweep", path("plan.json"), "-o", path("second"), "--reference-cache", path("kept")});
+  EXPECT_EQ(pictures(), kept);
+  EXPECT_EQ(read_text(folder_ / "first/table.csv"), read_text(folder_ / "second/table.csv"));
+}
+
 TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
   write_text(folder_ / "plan.json",
              R"({"beampipe_sweep": 1, "traces": ["soup.json", "missing.json"], "techniques": ["beam"]})");
@@ -242,10 +260,14 @@ TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
              R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "sizes": ["5x5"]})");
   write_text(folder_ / "frames.json",
              R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "frames": [2]})");
+  write_text(folder_ / "bins.json", R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam", "msaa:4"],
+    "memory_system.binned": [true, false]})");
   const Names before = folder_.list();
   expect_error(sweep(), 1, "missing.json");
   expect_error({"sweep", path("sized.json"), "-o", path("out")}, 1, "cannot be 5 x 5 pixels");
   expect_error({"sweep", path("frames.json"), "-o", path("out")}, 1, "0 to 1, found 2");
+  expect_error({"sweep", path("bins.json"), "-o", path("out")}, 1,
+               "expected techniques that work without bins, because a memory system has none, found beam");
   expect_error(sweep({"--part", "3/3"}), 2, "expected I/N");
   expect_error(sweep({"--merge", "--slurm"}), 2, "exclude each other");
   expect_error(sweep({"--plot", "x,y,z"}), 1, "the table has no column 'x'");
