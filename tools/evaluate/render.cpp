@@ -52,15 +52,6 @@ TimedResult render_timed(const RunPlan& plan, const Rendering& run, Progress& pr
 }
 
 // What a report has of a result, without pictures and counters of pixels.
-void add_counters(const FrameResult& result, FrameReport& report) {
-  report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
-  report.buffers = result.buffers;
-  report.stages = result.stages;
-  report.bin_pixels = result.bin_pixels;
-  report.bin_operations = result.bin_operations;
-  report.bin_invocations = result.bin_invocations;
-}
-
 FrameContent content_of(const Trace& trace, std::size_t index) {
   const Frame& frame = trace.frames[index];
   FrameContent content{.index = index,
@@ -73,6 +64,16 @@ FrameContent content_of(const Trace& trace, std::size_t index) {
 }
 
 }  // namespace
+
+void add_counters(const FrameResult& result, FrameReport& report) {
+  report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
+  report.buffers = result.buffers;
+  report.stages = result.stages;
+  report.pixels = std::uint64_t{result.image.width} * result.image.height;
+  report.bin_pixels = result.bin_pixels;
+  report.bin_operations = result.bin_operations;
+  report.bin_invocations = result.bin_invocations;
+}
 
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
                                    std::vector<History>& histories,
@@ -138,7 +139,6 @@ KeptPicture kept_or_rendered(const Rendering& run, const RunPlan& plan, Progress
   report.wall_ms = wall_time({timed.milliseconds});
   report.wall_ms.with_memory_model = run.models_memory;
   add_counters(timed.result, report);
-  report.pixels = std::uint64_t{rendered.image.width} * rendered.image.height;
   if (plan.pictures) plan.pictures->keep(spec, run.frame, run.colors, rendered);
   return rendered;
 }
@@ -194,7 +194,6 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   report.image = stem + ".exr";
   report.picture = stem + ".png";
   add_counters(result, report);
-  report.pixels = std::uint64_t{result.image.width} * result.image.height;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = on_threads(plan.options.threads, [&] {

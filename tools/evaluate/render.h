@@ -15,6 +15,9 @@
 
 namespace beampipe {
 
+// Puts what the frame counted into its report.
+void add_counters(const FrameResult& result, FrameReport& report);
+
 // Renders one frame plan.repeat times with every technique of the plan. Techniques take turns (A B A B ...), so that a
 // slow moment of the machine does not affect one of them alone. If the plan models memory and repeats frames, one more
 // run comes first, which models memory; the timed runs then model nothing. The first result of each technique goes to

@@ -42,17 +42,11 @@ CountedCell render_cell(const SweepPlan& plan, const SweepCell& cell, const Load
   CountedCell counts;
   counts.report = new_technique_report(technique, options.memory);
   for (const std::size_t frame : frames) {
-    FrameResult result = technique.render(loaded.trace, frame, options);
+    const FrameResult result = technique.render(loaded.trace, frame, options);
     counts.reach.add(result.cache_reach);
     FrameReport report;
     report.index = frame;
-    report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
-    report.buffers = std::move(result.buffers);
-    report.stages = std::move(result.stages);
-    report.pixels = std::uint64_t{result.image.width} * result.image.height;
-    report.bin_pixels = result.bin_pixels;
-    report.bin_operations = std::move(result.bin_operations);
-    report.bin_invocations = std::move(result.bin_invocations);
+    add_counters(result, report);
     counts.report.frames.push_back(std::move(report));
   }
   return counts;

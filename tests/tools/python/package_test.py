@@ -132,6 +132,16 @@ class Program(InFolder):
                     key, _, kind = name.partition(".")
                     self.assertEqual(value, stage[key][kind] if kind else stage[key], name)
             self.assertEqual(found.bytes_in_memory + found.bytes_on_chip > 0, True)
+            for way, times in of_program["modelled_ms"].items():
+                self.assertEqual({key: found.times[way][key] for key in ("in_turn", "on_cores", "at_once")},
+                                 {key: times[key] for key in ("in_turn", "on_cores", "at_once")})
+
+    def test_hardware_is_a_name_or_a_file(self):
+        mali = beampipe.render(self.trace, "beam", hardware="mali_g710")
+        self.assertNotEqual(mali.times["shaders"]["in_turn"], beampipe.render(self.trace, "beam").times["shaders"]["in_turn"])
+        self.assertEqual(beampipe.render(self.trace, "beam", memory_model=False).times, {})
+        with self.assertRaisesRegex(beampipe.Error, "none.json: expected a readable file or one of titan_v"):
+            beampipe.render(self.trace, "beam", hardware="none.json")
 
     def test_compare_finds_what_the_program_finds(self):
         found = beampipe.compare(self.trace, self.specs, metric="mae", ladder=[1, 4, 16])

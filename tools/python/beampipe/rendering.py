@@ -21,7 +21,8 @@ class Rendering:
     geometry covers, 0..1. counters: by name, height x width, what was counted in each pixel. stages: counters by stage
     and name, as in report.json (`beampipe counters` explains them); operations are "ops.add" and so on. buffers: the
     most bytes that each held at once. bytes_in_memory, bytes_on_chip: of the framebuffer, per pixel; on chip only while
-    a bin is drawn. Functions of the user's count nothing.
+    a bin is drawn. times: modelled milliseconds by implementation of the hardware: "in_turn", "on_cores", "at_once",
+    and the "busiest" unit. Functions of the user's count nothing.
     """
     technique: str
     frame: int
@@ -32,6 +33,7 @@ class Rendering:
     buffers: dict[str, int] = field(default_factory=dict)
     bytes_in_memory: int = 0
     bytes_on_chip: int = 0
+    times: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     @property
     def dram_bytes(self) -> int:
@@ -105,12 +107,10 @@ def name_of(technique: AnyTechnique) -> str:
 
 
 def _render_native(technique: _native.Technique, trace: Trace, frame: int, *, threads: int, memory_model: bool,
-                   history: Optional[_native.History] = None) -> Rendering:
-    found = _native.render(trace, technique, frame, threads, memory_model, history)
-    rgba = found["rgba"]
-    return Rendering(technique.spec, frame, numpy.ascontiguousarray(rgba[..., :3]), rgba[..., 3].copy(),
-                     found["counters"], found["stages"], found["buffers"], technique.bytes_in_memory,
-                     technique.bytes_on_chip)
+                   hardware: str, history: Optional[_native.History] = None) -> Rendering:
+    found = _native.render(trace, technique, frame, threads, memory_model, hardware, history)
+    rgba = found.pop("rgba")
+    return Rendering(technique.spec, frame, numpy.ascontiguousarray(rgba[..., :3]), rgba[..., 3].copy(), **found)
 
 
 def _render_own(function: Callable, trace: Trace, frame: int) -> Rendering:
@@ -131,9 +131,9 @@ def _frames(frames: Union[int, Iterable[int], None], trace: Trace) -> list[int]:
 
 
 def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, threads: int = 0,
-                  memory_model: bool = True) -> list[Rendering]:
+                  memory_model: bool = True, hardware: str = "titan_v") -> list[Rendering]:
     """The frames in this order; techniques with a history keep it from one to the next."""
-    how = {"threads": threads, "memory_model": memory_model}
+    how = {"threads": threads, "memory_model": memory_model, "hardware": hardware}
     if isinstance(technique, Pattern):
         return [technique.render(trace, frame, **how) for frame in frames]
     if not isinstance(technique, str):
@@ -143,14 +143,14 @@ def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, t
 
 
 def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable[int], None] = 0, width: int = 0,
-           height: int = 0, threads: int = 0, memory_model: bool = True,
+           height: int = 0, threads: int = 0, memory_model: bool = True, hardware: str = "titan_v",
            **options: Any) -> Union[Rendering, list[Rendering]]:
     """Renders a frame, or, as a list, several (None: all), with which techniques over time keep their history.
 
     technique: a spec ("beam", "msaa:8"), a Pattern, or a function of (trace, frame) that returns height x width x 3 or
     4 linear values. Options of a spec may be keywords: render(trace, "beam", pool=60). width, height: pixels; 0: as the
     trace says, or in proportion to the other. threads: 0: one per core; results do not depend on it. memory_model:
-    count what moves through caches and DRAM of a Titan V.
+    count what moves through caches and DRAM. hardware: a built-in name or a description's file.
     """
     name_of(technique)  # or it is none
     if options:
@@ -158,7 +158,8 @@ def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable
             raise Error(f"{name_of(technique)}: expected no options, found {', '.join(options)}")
         technique = spec(technique, **options)
     trace = trace.resized(width, height)
-    found = render_frames(trace, technique, _frames(frames, trace), threads=threads, memory_model=memory_model)
+    found = render_frames(trace, technique, _frames(frames, trace), threads=threads, memory_model=memory_model,
+                          hardware=hardware)
     return found[0] if isinstance(frames, int) else found
 
 

@@ -5,7 +5,10 @@
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
+#include "tools/evaluate/memory_system.h"
+#include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/msaa_ladder.h"
+#include "tools/evaluate/render.h"
 #include "tools/inspect/inspection.h"
 #include "tools/inspect/inspection_json.h"
 #include "tools/inspect/inspection_text.h"
@@ -18,14 +21,13 @@ namespace {
 
 namespace py = pybind11;
 
-FrameInput input_of(const TraceHandle& trace, std::size_t frame, const Technique& technique, int threads) {
+FrameInput input_of(const TraceHandle& trace, std::size_t frame, const Technique& technique, int threads,
+                    const MemoryParameters& memory) {
   if (threads < 0 || threads > 1024)
     throw std::runtime_error("threads: expected 1 to 1024, or 0 for one per core, found " + std::to_string(threads));
   require_memory(trace.trace(), frame_of(trace, frame), technique.working_bytes_per_pixel,
                  "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
-  FrameInput input{.threads = threads, .memory_limit = machine_memory() / 2, .textures = &trace.textures()};
-  input.memory = titan_v().memory;
-  return input;
+  return {.threads = threads, .memory = memory, .memory_limit = machine_memory() / 2, .textures = &trace.textures()};
 }
 
 py::dict counters_of(const StageCounters& stage) {
@@ -33,6 +35,21 @@ py::dict counters_of(const StageCounters& stage) {
   for (const CounterInfo& counter : stage_counters())
     if (has_counter(info_of(stage.stage.id), counter)) counters[counter.name] = counter.value(stage);
   return counters;
+}
+
+// By implementation.
+py::dict times_of(const FrameResult& result, const Hardware& hardware) {
+  FrameReport counted;
+  add_counters(result, counted);
+  py::dict all;
+  for (const Implementation& implementation : hardware.implementations) {
+    const ModelledTime time = modelled_time(hardware, implementation, counted.work());
+    py::dict one;
+    for (const TimeKind& kind : kTimes) one[kind.key] = time.*kind.ms;
+    one["busiest"] = time.busiest;
+    all[implementation.name.c_str()] = one;
+  }
+  return all;
 }
 
 py::dict to_python(const FrameResult& result) {
@@ -53,26 +70,37 @@ py::dict to_python(const FrameResult& result) {
 }
 
 py::dict render(const TraceHandle& trace, const Technique& technique, std::size_t frame, int threads, bool memory_model,
-                History* history) {
-  FrameInput input = input_of(trace, frame, technique, threads);
-  input.memory.modelled = memory_model;
+                const std::string& named, History* history) {
+  const Hardware hardware = read_hardware(named);
+  MemoryParameters memory = hardware.memory;
+  memory.modelled = memory_model;
+  if (lacks_bins(memory, technique))
+    throw std::runtime_error(technique.spec + " needs bins, and " + hardware.named + " has none");
+  FrameInput input = input_of(trace, frame, technique, threads, memory);
   input.history = history;
-  return to_python(interruptible([&](const std::atomic<bool>& cancelled) {
+  const FrameResult result = interruptible([&](const std::atomic<bool>& cancelled) {
     input.cancelled = &cancelled;
     return technique.render(trace.trace(), frame, input);
-  }));
+  });
+  const Framebuffer& framebuffer = technique.framebuffer;
+  py::dict all = to_python(result);
+  all["times"] = memory_model && !is_reference(technique.spec) ? times_of(result, hardware) : py::dict();
+  all["bytes_in_memory"] = technique.framebuffer_bytes_per_pixel(memory);
+  all["bytes_on_chip"] = framebuffer.is_on_chip(memory) ? framebuffer.on_chip_bytes_per_pixel() : 0;
+  return all;
 }
 
 // The inspection as JSON and as text.
 py::tuple inspect_pixel(const TraceHandle& trace, const Technique& technique, std::uint32_t x, std::uint32_t y,
                         std::size_t frame, int threads) {
   require_inspectable(technique);
-  FrameInput input = input_of(trace, frame, technique, threads);
+  MemoryParameters memory = titan_v().memory;
+  memory.modelled = false;
+  FrameInput input = input_of(trace, frame, technique, threads, memory);
   const Frame& of = frame_of(trace, frame);
   if (x >= of.width || y >= of.height)
     throw std::runtime_error("pixel " + std::to_string(x) + "," + std::to_string(y) + ": expected x from 0 to " +
                              std::to_string(of.width - 1) + " and y from 0 to " + std::to_string(of.height - 1));
-  input.memory.modelled = false;
   const std::vector<PixelInspection> found = interruptible([&](const std::atomic<bool>& cancelled) {
     input.cancelled = &cancelled;
     return inspect(trace.trace(), frame, technique, {{x, y}}, input);
@@ -88,13 +116,7 @@ void add_rendering(py::module_& module) {
       .def(py::init([](const std::string& spec) { return parse_technique(spec); }))
       .def_readonly("spec", &Technique::spec)
       .def_property_readonly("rung", [](const Technique& self) { return is_rung(self) ? self.samples : 0; })
-      .def_readonly("keeps_history", &Technique::keeps_history)
-      .def_property_readonly("bytes_in_memory",
-                             [](const Technique& self) { return self.framebuffer_bytes_per_pixel(titan_v().memory); })
-      .def_property_readonly("bytes_on_chip", [](const Technique& self) {
-        const bool is_on_chip = self.framebuffer.is_on_chip(titan_v().memory);
-        return is_on_chip ? self.framebuffer.on_chip_bytes_per_pixel() : 0;
-      });
+      .def_readonly("keeps_history", &Technique::keeps_history);
   module.def("msaa_at", [](const std::string& name, const std::vector<std::array<int, 2>>& places) {
     std::vector<glm::ivec2> converted;
     for (const auto& [x, y] : places) converted.emplace_back(x, y);
