@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests of `beampipe figure`: figure_test.py PROGRAM PACKAGE_FOLDER"""
+import os
 import re
 import shutil
 import subprocess
@@ -58,6 +59,7 @@ class Figure(InFolder):
 
     def test_errors_are_one_line_and_leave_the_old_figure(self):
         (self.folder / "old.svg").write_text("old")
+        self.stand_in("import sys; sys.stdin.buffer.read(); sys.exit('no such codec')")
         self.run_program("run", "fence.json", "-t", "beam", "-o", "ran")
         for code, expected, words in (
                 (1, "expected the report of a finished run, found none", ["nothing", "-o", "old.svg"]),
@@ -67,13 +69,44 @@ class Figure(InFolder):
                  ["fence", "--crop", "90,0,12,8", "-o", "old.svg"]),
                 (1, "expected a frame from 0 to 0, found 1", ["fence", "--frame", "1", "-o", "old.svg"]),
                 (1, "no/old.svg: cannot be written: No such file or directory", ["fence", "-o", "no/old.svg"]),
-                (2, "expected a name that ends in .svg, .pdf or .png", ["fence", "-o", "old.jpg"]),
+                (1, "ffmpeg failed: no such codec", ["fence", "-o", "old.mp4"]),
+                (2, "--frame 1: a film shows all frames", ["fence", "--frame", "1", "-o", "old.mp4"]),
+                (2, "expected a name that ends in .svg, .pdf, .png or .mp4", ["fence", "-o", "old.jpg"]),
                 (2, "expected X,Y,WIDTH,HEIGHT in pixels", ["fence", "--crop", "1,2,3", "-o", "old.svg"]),
                 (2, "required: DIR, -o/--output", [])):
             said = self.run_program("figure", *words, fails=code)
             self.assertIn(expected, said)
             self.assertEqual(said.count("\n"), 1)
         self.assertEqual((self.folder / "old.svg").read_text(), "old")
+        self.assertFalse((self.folder / "old.mp4").exists())
+
+    def stand_in(self, script):
+        """A program that is called in place of ffmpeg."""
+        (self.folder / "bin").mkdir(exist_ok=True)
+        program = self.folder / "bin/ffmpeg"
+        program.write_text(f"#!{sys.executable}\n{script}\n")
+        program.chmod(0o755)
+        before = os.environ["PATH"]
+        self.addCleanup(os.environ.__setitem__, "PATH", before)
+        os.environ["PATH"] = f"{self.folder / 'bin'}:{before}"
+
+    def test_a_film_has_a_figure_for_each_frame(self):
+        self.run_program("make", "fence", "--frames", "3", "--orbit", "30", "--width", "48", "--height", "28", "-o", "moving.json")
+        self.run_program("compare", "moving.json", "-t", "beam", "msaa:2", "--ladder", "1,2", "-o", "moving")
+        self.stand_in("import sys; open(sys.argv[-1], 'wb').write(sys.stdin.buffer.read())")
+        self.run_program("figure", "moving", "-o", "film.mp4")
+        pictures = (self.folder / "film.mp4").read_bytes().split(b"\x89PNG\r\n\x1a\n")[1:]
+        self.assertEqual(len(pictures), 3)
+        self.assertEqual(len(set(pictures)), 3)
+        self.assertEqual(len({picture[8:16] for picture in pictures}), 1)  # width and height
+
+    def test_a_film_is_one_that_ffmpeg_can_read(self):
+        if not shutil.which("ffprobe"):
+            self.skipTest("needs the Debian package ffmpeg")
+        self.run_program("figure", "fence", "-o", "film.mp4")
+        found = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of",
+                                "csv=p=0", "film.mp4"], cwd=self.folder, capture_output=True, text=True, check=True)
+        self.assertEqual(found.stdout.strip(), "1")
 
     def test_help_has_an_example(self):
         self.assertIn("beampipe figure out -o figure.pdf", self.run_program("figure", "--help"))

@@ -11,9 +11,12 @@ boxes, maps of the errors on one scale for all, the equivalent MSAA rate (EMR) a
 
 Examples:
   beampipe figure out -o figure.pdf
+  beampipe figure out -o film.mp4
   beampipe figure fence leaves -t beam msaa:8 --crop 150,60,24,24 -o figure.svg --tex table.tex
 
 Debian packages: python3-matplotlib python3-numpy."""
+
+FILM = ".mp4"
 
 
 class WrongUsage(Exception):
@@ -46,12 +49,12 @@ def parse(words):
     parser = _Parser(prog="beampipe figure", description="Make a figure for a paper: pictures, crops, maps of errors.",
                      epilog=EXAMPLES, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="+", metavar="DIR", help="what `beampipe compare` wrote; a row for each")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="the figure: .svg, .pdf or .png")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="the figure: .svg, .pdf or .png; or .mp4, a film of all frames (needs the program ffmpeg)")
     parser.add_argument("-t", "--technique", nargs="+", action="extend", metavar="SPEC",
                         help="only these techniques, in this order (default: all)")
     parser.add_argument("--crop", type=_crop, action="append", metavar="X,Y,W,H",
                         help="enlarge these pixels; may be repeated (default: two squares where techniques differ most)")
-    parser.add_argument("--frame", type=int, default=0, metavar="N", help="the frame of the results (default: 0)")
+    parser.add_argument("--frame", type=int, metavar="N", help="the frame of the results (default: 0)")
     parser.add_argument("--inches", type=_inches, default=7.0, metavar="N", help="the figure's width (default: 7)")
     parser.add_argument("--tex", metavar="FILE", help="also write the numbers as a LaTeX table (booktabs)")
     return parser.parse_args(words)
@@ -63,14 +66,25 @@ def work(arguments):
     except ModuleNotFoundError as missing:
         raise Error(f"{missing.name} is missing: please install the Debian packages python3-matplotlib "
                     "python3-numpy") from None
-    if pathlib.Path(arguments.output).suffix not in figures.ENDINGS:
-        raise WrongUsage(f"-o {arguments.output}: expected a name that ends in .svg, .pdf or .png")
-    scenes = [figures.scene_of(Report(folder), techniques=arguments.technique, frame=arguments.frame)
-              for folder in arguments.folders]
-    figure = figures.draw(scenes, crops=arguments.crop, width=arguments.inches)
+    ending = pathlib.Path(arguments.output).suffix
+    if ending not in (*figures.ENDINGS, FILM):
+        raise WrongUsage(f"-o {arguments.output}: expected a name that ends in .svg, .pdf, .png or .mp4")
+    if ending == FILM and arguments.frame is not None:
+        raise WrongUsage(f"--frame {arguments.frame}: a film shows all frames")
+    reports = [Report(folder) for folder in arguments.folders]
+
+    def scenes(frame):
+        return [figures.scene_of(report, techniques=arguments.technique, frame=frame) for report in reports]
+
+    how = {"crops": arguments.crop, "width": arguments.inches}
+    shown = scenes(arguments.frame or 0)
+    if ending == FILM:
+        count = min(len(report.frames(figures.REFERENCE)) for report in reports)
+        figures.film([shown, *map(scenes, range(1, count))], arguments.output, **how)
+    else:
+        figures.save(figures.draw(shown, **how), arguments.output)
     if arguments.tex:
-        figures.write_atomically(arguments.tex, figures.booktabs(scenes).encode())
-    figures.save(figure, arguments.output)
+        figures.write_atomically(arguments.tex, figures.booktabs(shown).encode())
 
 
 def main():

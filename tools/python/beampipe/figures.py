@@ -3,11 +3,14 @@
   scene = figures.scene_of(found)                       # of a Comparison, or of a Report
   figures.save(figures.draw([scene]), "figure.svg")     # or .pdf, .png
   figures.booktabs([scene])                             # its table for LaTeX
+  figures.film([[scene], [next_scene]], "film.mp4")     # a figure for each frame
 """
 from __future__ import annotations
 
+import io
 import os
 import pathlib
+import subprocess
 import tempfile
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Optional, Sequence, Union
@@ -36,6 +39,7 @@ CROP_COLORS = ("#e69f00", "#56b4e9", "#009e73", "#cc79a7")  # Okabe and Ito's, w
 MAP = "magma"
 MAP_SHARE = 99.5  # per cent of the errors that the scale of maps shows; the rest has its last colour
 DOTS_PER_INCH = 300
+FRAMES_PER_SECOND = 30
 Crop = tuple[int, int, int, int]  # x, y of the upper left pixel, width, height
 
 
@@ -230,19 +234,30 @@ def draw(scenes: Sequence[Scene], *, crops: Optional[Sequence[Crop]] = None, wid
     crops: (x, y, width, height) in pixels, of all scenes; None: where techniques differ most. width: of the figure, in
     inches.
     """
+    return _draw(scenes, _cuts(scenes, crops), _scale(scenes), width)
+
+
+def _cuts(scenes: Sequence[Scene], crops: Optional[Sequence[Crop]]) -> list[list[Crop]]:
     if not scenes or any(len(scene.columns) < 2 for scene in scenes):
         raise Error("figure: expected at least one scene with a technique")
     cuts = [where_techniques_differ(scene) if crops is None else list(crops) for scene in scenes]
     for scene, cut in zip(scenes, cuts):
         check_crops(cut, scene)
+    return cuts
+
+
+def _scale(scenes: Sequence[Scene]) -> Normalize:
+    errors = numpy.concatenate([each.errors.ravel() for scene in scenes for each in scene.columns if each.errors is not None])
+    return Normalize(0, float(numpy.percentile(errors, MAP_SHARE)) or float(errors.max()) or 1.0, clip=True)
+
+
+def _draw(scenes: Sequence[Scene], cuts: Sequence[Sequence[Crop]], scale: Normalize, width: float) -> Figure:
     most = max(len(scene.columns) for scene in scenes)
     column = (width - LEFT - GAP * (most - 1) - 0.01) / most
-    errors = numpy.concatenate([each.errors.ravel() for scene in scenes for each in scene.columns if each.errors is not None])
-    top = float(numpy.percentile(errors, MAP_SHARE)) or float(errors.max()) or 1.0
     with rc_context(STYLE):
         page = _Page(width, sum(_height(scene, cut, column) for scene, cut in zip(scenes, cuts)))
         for scene, cut in zip(scenes, cuts):
-            _draw_scene(page, scene, cut, column, Normalize(0, top, clip=True))
+            _draw_scene(page, scene, cut, column, scale)
     return page.figure
 
 
@@ -280,6 +295,32 @@ def save(figure: Figure, file: Union[str, os.PathLike]) -> None:
         figure.savefig(drawn, format=ending[1:], dpi=DOTS_PER_INCH, metadata=dateless)
         drawn.seek(0)
         write_atomically(file, drawn.read())
+
+
+def film(frames: Sequence[Sequence[Scene]], file: Union[str, os.PathLike], *, crops: Optional[Sequence[Crop]] = None,
+         width: float = WIDTH) -> None:
+    """Writes .mp4 with the program ffmpeg: a figure for each frame. Crops and the scale of maps stay the same: those of
+    draw() for the first frame, and for all of them together."""
+    cuts, scale = _cuts(frames[0], crops), _scale([scene for scenes in frames for scene in scenes])
+    with tempfile.TemporaryDirectory() as folder:
+        written = pathlib.Path(folder) / "film.mp4"
+        command = ["ffmpeg", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(FRAMES_PER_SECOND), "-i", "-",
+                   "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", str(written)]
+        try:
+            with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+                _, said = process.communicate(b"".join(_png(_draw(scenes, cuts, scale, width)) for scenes in frames))
+        except FileNotFoundError:
+            raise Error("ffmpeg is missing: please install the Debian package ffmpeg") from None
+        if process.returncode or not written.exists():
+            raise Error(f"{file}: ffmpeg failed: {' '.join(said.decode(errors='replace').split()) or process.returncode}")
+        write_atomically(file, written.read_bytes())
+
+
+def _png(figure: Figure) -> bytes:
+    drawn = io.BytesIO()
+    with rc_context(STYLE):
+        figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH)
+    return drawn.getvalue()
 
 
 def _tex(text: str) -> str:
