@@ -1,12 +1,10 @@
 #include "tools/report/finished_run.h"
 
 #include "tools/evaluate/remodel.h"
-#include "tools/report/report_file.h"
 
 namespace beampipe {
 
-Report finished_run(const std::filesystem::path& folder, const Hardware* other) {
-  const ReportFile file = read_report(folder);
+Report finished_run(const ReportFile& file, const Hardware* other) {
   const std::string name = (file.folder / "report.json").string();
   if (!file.json.contains("hardware"))
     throw ReportError(name + ": expected a run whose times can be modelled, found one without hardware");
@@ -18,6 +16,10 @@ Report finished_run(const std::filesystem::path& folder, const Hardware* other) 
   } catch (const OtherMemory& error) {
     throw ReportError(name + ": " + error.what());
   }
+}
+
+Report finished_run(const std::filesystem::path& folder, const Hardware* other) {
+  return finished_run(read_report(folder), other);
 }
 
 }  // namespace beampipe
