@@ -15,6 +15,8 @@ Report finished_run(const ReportFile& file, const Hardware* other) {
     return report;
   } catch (const OtherMemory& error) {
     throw ReportError(name + ": " + error.what());
+  } catch (const TraceError& error) {  // it names report.json alone
+    throw ReportError((file.folder / error.what()).string());
   }
 }
 

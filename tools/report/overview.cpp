@@ -198,7 +198,8 @@ Table runs_table(const std::vector<OverviewRun>& runs, const std::filesystem::pa
 
 std::vector<Table> measure_tables(const std::vector<OverviewRun>& runs, const std::vector<std::string>& specs) {
   std::set<std::string> metrics;
-  for (const OverviewRun& run : runs) metrics.insert(run.report->json.value("metric", std::string()));
+  for (const OverviewRun& run : runs)
+    if (const Json* const metric = run.report->json.find("metric")) metrics.insert(metric->get<std::string>());
   std::vector<Table> tables;
   for (const Quantity& quantity : kQuantities) {
     const auto has_it = [&](const OverviewRun& run) { return find_column(run.techniques, quantity.key) != nullptr; };
@@ -209,7 +210,7 @@ std::vector<Table> measure_tables(const std::vector<OverviewRun>& runs, const st
     add_columns(table, runs, specs, {quantity.key, "", quantity.unit, definition},
                 [&](const OverviewRun& each, const std::string& spec) {
                   return quantity.key == std::string("emr")
-                             ? emr_cell(each, spec, metrics.size() == 1)
+                             ? emr_cell(each, spec, metrics.size() <= 1)
                              : number_cell(value_of(each, spec, quantity.key), quantity.factor);
                 });
   }

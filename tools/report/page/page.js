@@ -65,7 +65,7 @@ function startRun() {
 // Of several runs, which have no pictures here.
 function startOverview() {
   document.querySelector("header").append(makeTable(data.runs));
-  byId("implementations").hidden = true;
+  for (const id of ["implementations", "cost-note", "cards"]) byId(id).hidden = true;
   for (const section of ["stages", "pictures", "maps", "inspections"]) dropSection(section);
 }
 
