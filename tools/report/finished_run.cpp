@@ -1,6 +1,7 @@
 #include "tools/report/finished_run.h"
 
 #include "tools/evaluate/remodel.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 
