@@ -97,14 +97,12 @@ void add_report_command(CommandLine& line, InterruptGate& gate) {
   command
       .add("--frame", arguments->frame,
            "the frame that the page shows first (default: the first one); if a page would be too large, it has only "
-           "some "
-           "frames, and always this one")
+           "some frames, and always this one")
       .excludes(output);
   command.footer(
-      "Without -o, writes into DIR: report.html, a single file to open in a browser; tables/*.csv, the tables of the "
-      "page; and\n"
-      "plots/*.svg, its plots (needs the program gnuplot).\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 "
-      "-o out\n"
+      "With -o, writes that file alone. Without it, writes into DIR: report.html, a single file to open in a browser;\n"
+      "tables/*.csv, the tables of the page; and plots/*.svg, its plots (needs the program gnuplot).\n\n"
+      "Example:\n  beampipe compare fence.json -t beam msaa:8 -o out\n"
       "  beampipe report out\n"
       "  beampipe report fence maple -o overview.html");
   command.set_work([arguments, &gate] { work(*arguments, gate); });

@@ -68,16 +68,16 @@ const Json* find_time(const OverviewRun& run, const std::string& spec, const std
 
 std::vector<OverviewRun> runs_of(const std::vector<ReportFile>& reports) {
   std::vector<OverviewRun> runs;
-  std::vector<std::string> descriptions;
+  std::vector<std::string> descriptions, labels;  // of each hardware
   std::map<std::string, int> same_label;
-  std::vector<std::string> labels;
   for (const ReportFile& report : reports) {
     const std::string description =
         Json::array({report.json.value("hardware", Json()), report.json.value("memory_system", Json())}).dump();
     const auto known = std::ranges::find(descriptions, description);
     const auto number = static_cast<std::size_t>(known - descriptions.begin());
     if (known == descriptions.end()) {
-      const std::string label = hardware_label(report).empty() ? "unnamed" : hardware_label(report);
+      const std::string named = read_from_report(report.folder, [&] { return hardware_label(report); });
+      const std::string label = named.empty() ? "unnamed" : named;
       const int count = ++same_label[label];
       descriptions.push_back(description);
       labels.push_back(count == 1 ? label : label + " (" + std::to_string(count) + ")");
@@ -199,7 +199,7 @@ Table runs_table(const std::vector<OverviewRun>& runs, const std::filesystem::pa
 std::vector<Table> measure_tables(const std::vector<OverviewRun>& runs, const std::vector<std::string>& specs) {
   std::set<std::string> metrics;
   for (const OverviewRun& run : runs)
-    if (const Json* const metric = run.report->json.find("metric")) metrics.insert(metric->get<std::string>());
+    if (const Json* const metric = run.report->json.find("metric")) metrics.insert(metric->dump());
   std::vector<Table> tables;
   for (const Quantity& quantity : kQuantities) {
     const auto has_it = [&](const OverviewRun& run) { return find_column(run.techniques, quantity.key) != nullptr; };
