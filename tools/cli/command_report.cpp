@@ -1,14 +1,16 @@
-// beampipe report: makes a page, plots and tables from the results of run or compare.
+// beampipe report: makes a page, plots and tables from the results of run or compare, or a page of several of them.
 
 #include <iostream>
 #include <memory>
 
 #include "tools/cli/commands.h"
 #include "tools/files/output.h"
+#include "tools/files/shell_word.h"
 #include "tools/report/figures.h"
 #include "tools/report/gnuplot.h"
 #include "tools/report/inspections.h"
 #include "tools/report/layers.h"
+#include "tools/report/overview.h"
 #include "tools/report/page.h"
 #include "tools/report/tables.h"
 
@@ -16,7 +18,8 @@ namespace beampipe {
 namespace {
 
 struct ReportArguments {
-  std::string folder;
+  std::vector<std::string> folders;
+  std::string output;
   std::optional<std::size_t> frame;
 };
 
@@ -32,9 +35,9 @@ std::size_t position_of(const ReportFile& report, std::optional<std::size_t> fra
 }
 
 void write_report(const ReportArguments& arguments, InterruptGate& gate) {
-  OutputFolder output(arguments.folder, gate);
+  OutputFolder output(arguments.folders.front(), gate);
   output.lock();
-  const ReportFile report = read_report(arguments.folder);
+  const ReportFile report = read_report(arguments.folders.front());
   std::vector<Figure> figures;
   read_from_report(report.folder, [&] {
     const std::vector<Table> tables = report_tables(report);
@@ -57,23 +60,52 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
             << "/*.csv\nplots:  " << (report.folder / "plots").string() << "/*.svg\n";
 }
 
+void write_overview(const ReportArguments& arguments, InterruptGate& gate) {
+  const std::filesystem::path file = std::filesystem::absolute(arguments.output);
+  if (file.extension() != ".html")
+    throw UsageError("--output " + arguments.output + ": expected a name that ends in .html");
+  require_writable_file(file);
+  std::string command = "beampipe report";
+  std::vector<ReportFile> reports;
+  for (const std::string& folder : arguments.folders) {
+    command += " " + short_shell_word(folder);
+    reports.push_back(read_report(folder));
+  }
+  const Overview overview = overview_of(reports, file.parent_path());
+  OutputFolder output(file.parent_path(), gate);
+  output.write(file.filename(), overview_html(overview, command + " -o " + short_shell_word(arguments.output)));
+  output.keep();
+  std::cout << "page:   " << arguments.output << "\n";
+}
+
+void work(const ReportArguments& arguments, InterruptGate& gate) {
+  if (!arguments.output.empty()) return write_overview(arguments, gate);
+  if (arguments.folders.size() > 1)
+    throw UsageError("several folders: expected -o FILE.html for their page, found none");
+  write_report(arguments, gate);
+}
+
 }  // namespace
 
 void add_report_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<ReportArguments>();
   Command command =
       line.add_command("report", "Make a page to read, with tables and plots, from the results of run or compare");
-  command.add("DIR", arguments->folder, "the folder that run or compare has written").required();
-  command.add(
-      "--frame", arguments->frame,
-      "the frame that the page shows first (default: the first one); if a page would be too large, it has only some "
-      "frames, and always this one");
+  command.add("DIR", arguments->folders, "folders that run or compare wrote").required();
+  const Option output =
+      command.add("-o,--output", arguments->output, "FILE.html: one page over all these runs; several folders need it");
+  command
+      .add("--frame", arguments->frame,
+           "the frame that the page shows first (default: the first one); if a page would be too large, it has only "
+           "some frames, and always this one")
+      .excludes(output);
   command.footer(
-      "Writes into DIR: report.html, a single file to open in a browser; tables/*.csv, the tables of the page; and\n"
-      "plots/*.svg, its plots (needs the program gnuplot).\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 "
-      "-o out\n"
-      "  beampipe report out");
-  command.set_work([arguments, &gate] { write_report(*arguments, gate); });
+      "With -o, writes that file alone. Without it, writes into DIR: report.html, a single file to open in a browser;\n"
+      "tables/*.csv, the tables of the page; and plots/*.svg, its plots (needs the program gnuplot).\n\n"
+      "Example:\n  beampipe compare fence.json -t beam msaa:8 -o out\n"
+      "  beampipe report out\n"
+      "  beampipe report fence maple -o overview.html");
+  command.set_work([arguments, &gate] { work(*arguments, gate); });
 }
 
 }  // namespace beampipe

@@ -1,12 +1,11 @@
 #include "tools/report/finished_run.h"
 
 #include "tools/evaluate/remodel.h"
-#include "tools/report/report_file.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 
-Report finished_run(const std::filesystem::path& folder, const Hardware* other) {
-  const ReportFile file = read_report(folder);
+Report finished_run(const ReportFile& file, const Hardware* other) {
   const std::string name = (file.folder / "report.json").string();
   if (!file.json.contains("hardware"))
     throw ReportError(name + ": expected a run whose times can be modelled, found one without hardware");
@@ -17,7 +16,13 @@ Report finished_run(const std::filesystem::path& folder, const Hardware* other) 
     return report;
   } catch (const OtherMemory& error) {
     throw ReportError(name + ": " + error.what());
+  } catch (const TraceError& error) {  // it names report.json alone
+    throw ReportError((file.folder / error.what()).string());
   }
+}
+
+Report finished_run(const std::filesystem::path& folder, const Hardware* other) {
+  return finished_run(read_report(folder), other);
 }
 
 }  // namespace beampipe

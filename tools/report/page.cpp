@@ -2,6 +2,7 @@
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/hardware.h"
+#include "tools/evaluate/results.h"
 #include "tools/files/shell_word.h"
 #include "tools/report/cards.h"
 #include "tools/report/conditions.h"
@@ -65,31 +66,52 @@ Json hardware_file(const ReportFile& report) {
   return {{"file", label + ".json"}, {"text", hardware->dump(2)}};
 }
 
-}  // namespace
+template <class Item>
+Json to_json(const std::vector<Item>& items) {
+  Json json = Json::array();
+  for (const Item& item : items) json.push_back(to_json(item));
+  return json;
+}
 
-std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
-                      const Json& layers, std::size_t shown, const Json& inspections) {
-  Json data = {{"scene", report.scene},
-               {"trace", short_shell_word(report.json.at("trace").get<std::string>())},
-               {"frames", report.json.at("results").at(0).at("frames").size()},
-               {"shown", shown},
-               {"conditions", report_conditions(report)},
-               {"hardware", hardware_file(report)},
-               {"summary", report_cards(report)},
-               {"layers", layers},
-               {"inspections", inspections},
-               {"inspectable", inspectable(report)}};
-  data["tables"] = Json::array();
-  for (const Table& table : tables) data["tables"].push_back(to_json(table));
-  data["figures"] = Json::array();
-  for (const Figure& figure : figures) data["figures"].push_back(beampipe::to_json(figure));
+// `name`: of what the page is about.
+std::string filled_page(const std::string& name, const Json& data) {
   std::string page = fill(kPageHtml, "css", kPageCss);
   page = fill(page, "d3", kD3);
   page = fill(page, "scripts", kPageScripts);
   page = fill(page, "data", script_json(data));
-  return fill(page, "title",
-              html_text(report.scene) +
-                  " · beampipe report");  // the page may contain the same characters again, but only later
+  // The page may contain the same characters again, but only later.
+  return fill(page, "title", html_text(name) + " · beampipe report");
+}
+
+}  // namespace
+
+std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                      const Json& layers, std::size_t shown, const Json& inspections) {
+  const Json data = {{"scene", report.scene},
+                     {"trace", short_shell_word(report.json.at("trace").get<std::string>())},
+                     {"frames", report.json.at("results").at(0).at("frames").size()},
+                     {"shown", shown},
+                     {"conditions", report_conditions(report)},
+                     {"hardware", hardware_file(report)},
+                     {"summary", report_cards(report)},
+                     {"layers", layers},
+                     {"inspections", inspections},
+                     {"inspectable", inspectable(report)},
+                     {"tables", to_json(tables)},
+                     {"figures", to_json(figures)}};
+  return filled_page(report.scene, data);
+}
+
+std::string overview_html(const Overview& overview, const std::string& command) {
+  const std::string name = "Overview of " + std::to_string(overview.runs.rows.size()) + " runs";
+  const Json conditions =
+      Json::array({Json::array({"command", command}), Json::array({"program", "beampipe " + program_version()})});
+  return filled_page(name, {{"scene", name},
+                            {"conditions", conditions},
+                            {"summary", {{"cards", Json::array()}}},
+                            {"runs", to_json(overview.runs)},
+                            {"tables", to_json(overview.measures)},
+                            {"figures", to_json(overview.figures)}});
 }
 
 }  // namespace beampipe

@@ -12,14 +12,6 @@
 namespace beampipe {
 namespace {
 
-// The mean of positive numbers. It is 0 if one of them is 0, and exact if all are equal.
-double geometric_mean(const std::vector<double>& values) {
-  if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) return values.front();
-  double sum = 0;
-  for (const double value : values) sum += std::log(value);
-  return std::exp(sum / static_cast<double>(values.size()));
-}
-
 TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_technique) {
   TechniqueSummary mean = of_one_technique.front();
   std::vector<double> bytes, all_bytes, ms, rmse, emr;
@@ -78,6 +70,13 @@ void add_unit(std::string& units, const std::string& unit) {
 }
 
 }  // namespace
+
+double geometric_mean(const std::vector<double>& values) {
+  if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) return values.front();
+  double sum = 0;
+  for (const double value : values) sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
 
 void add_numbers(Json& sum, const Json& other) {
   if (sum.is_null()) sum = Json::object();

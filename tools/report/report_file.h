@@ -93,6 +93,9 @@ void divide_numbers(Json& sum, std::uint64_t count);
 // Reads FOLDER/report.json. Throws ReportError, or TraceError if the file is not JSON.
 ReportFile read_report(const std::filesystem::path& folder);
 
+// Of positive numbers, of which there is at least one. It is 0 if one of them is 0, and exact if all are equal.
+double geometric_mean(const std::vector<double>& values);
+
 // The geometric means over several reports of RMSE, EMR, times and bytes, for the techniques that are in all reports,
 // in the order of the first report, and for the implementations of hardware that all reports of a technique have. A
 // mean is a lower (upper) bound if one of its values is. If it would be both, it is

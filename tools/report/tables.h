@@ -22,7 +22,8 @@ struct Table {
   std::string title;  // on the page
   std::string note;   // what its numbers are
   std::vector<Column> columns;
-  std::vector<std::vector<Json>> rows;  // one value per column: a number, a string or null
+  std::vector<std::vector<Json>> rows;  // one value per column: a number, a string or null; or, on
+  // overviews, {"text", "value", "href"}: what is read, the number for it, a file
 };
 
 // The tables of techniques, of their framebuffers' surfaces, of stages, of saved work, of frames (if there are several)

@@ -821,6 +821,42 @@ class ComparisonOfOneTechnique(PageTest):
         self.assertEqual(self.plots(), ["storage", "speed", "logical_bytes", "roofline_beam"])
 
 
+class OverviewPage(PageTest):
+    scene = ["fence", "--width", "64", "--height", "36"]
+    command = ["run", "-t", "msaa:8", "beam"]
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        for command in [["run", cls.trace, "-t", "beam", "alpha", "-o", f"{cls.scratch.name}/a #2"],
+                        ["report", f"{cls.scratch.name}/a #2"],
+                        ["report", f"{cls.scratch.name}/a #2", str(cls.folder), "-o", f"{cls.scratch.name}/all.html"]]:
+            subprocess.run([BEAMPIPE, *command], check=True, stdout=subprocess.DEVNULL)
+
+    def setUp(self):
+        super().setUp()
+        self.browser.open(self.folder.parent / "all.html")
+
+    def test_has_what_several_runs_share(self):
+        self.assertEqual(self.texts("h1"), ["Overview of 2 runs beampipe report"])
+        self.assertEqual(self.texts("nav a"), ["Cost", "Tables"])
+        self.assertEqual(self.plots(), ["times_shaders"])
+        links = self.browser.run("return [...document.querySelectorAll('#table-runs a')].map((link) => link.href)")
+        self.assertEqual(links, [(self.folder.parent / name / "report.html").as_uri() for name in ["a #2", "out"]])
+
+    def test_times_sort_by_number(self):
+        beam, alpha, msaa = table_rows(self.browser, "time_shaders")
+        self.assertEqual((alpha["in_turn_1"][1], msaa["in_turn_0"][1], alpha["in_turn_mean_0"][1]), ("–", "–", "–"))
+        self.assertRegex(beam["in_turn_0"][1], r"^[\d.]+ \([\d.]+ to [\d.]+\)$")
+        self.browser.run("document.querySelectorAll('#table-time_shaders thead button')[1].click()")
+        values = [row["in_turn_0"][0] for row in table_rows(self.browser, "time_shaders")]
+        self.assertEqual(values[2], "", "empty cells come last")
+        self.assertLess(float(values[0]), float(values[1]))
+
+    def test_fits_a_telephone(self):
+        self.assert_fits(390)
+
+
 def main():
     try:
         PageTest.browser = Browser()

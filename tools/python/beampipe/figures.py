@@ -305,7 +305,7 @@ def film(frames: Sequence[Sequence[Scene]], file: Union[str, os.PathLike], *, cr
     with tempfile.TemporaryDirectory() as folder:
         written = pathlib.Path(folder) / "film.mp4"
         command = ["ffmpeg", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(FRAMES_PER_SECOND), "-i", "-",
-                   "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", str(written)]
+                   "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", str(written)]
         try:
             with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
                 _, said = process.communicate(b"".join(_png(_draw(scenes, cuts, scale, width)) for scenes in frames))

@@ -52,14 +52,26 @@ function conditionText(name, text) {
 
 byId("conditions").append(...data.conditions.map(([name, text]) =>
   make("div", {}, make("dt", {}, name), make("dd", {}, ...conditionText(name, text)))));
-startCards(data.summary);
-startFigures(data.figures);
-byId("tables").append(...data.tables.map(makeTable));
-startInspections(data.inspections);
-startTheme();
-startTips();
 const loaders = [];
 const reload = () => Promise.all(loaders.map((load) => load()));
-startFrames(reload);
-loaders.push(startPictures(), startMaps());
+
+function startRun() {
+  startCards(data.summary);
+  startInspections(data.inspections);
+  startFrames(reload);
+  loaders.push(startPictures(), startMaps());
+}
+
+// Of several runs, which have no pictures here.
+function startOverview() {
+  document.querySelector("header").append(makeTable(data.runs));
+  for (const id of ["implementations", "cost-note", "cards"]) byId(id).hidden = true;
+  for (const section of ["stages", "pictures", "maps", "inspections"]) dropSection(section);
+}
+
+(data.runs ? startOverview : startRun)();
+startFigures(data.figures);
+byId("tables").append(...data.tables.map(makeTable));
+startTheme();
+startTips();
 reload().then(() => { document.documentElement.dataset.ready = "yes"; });

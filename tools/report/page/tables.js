@@ -1,6 +1,10 @@
 // Tables. A click on a column's title sorts by it, and pointing at it shows what the column means. If a table has views,
 // only the columns of one view are shown at a time, so that it fits the page.
 
+// What a cell is sorted by. In place of a value it may be { text, value, href }: what is read, the number that it stands
+// for, and a file beside the page.
+const valueOf = (cell) => cell?.value ?? cell?.text ?? cell;
+
 function compareCells(a, b) {
   if (a === null || b === null) return (a === null) - (b === null);  // empty cells come last
   return typeof a === "number" ? a - b : String(a).localeCompare(String(b));
@@ -21,7 +25,7 @@ function sortTable(heads, body, rows, column) {
 function columnFormats(table) {
   const rows = table.rows.filter((row) => row[0] !== "reference");
   return table.columns.map((column, i) => {
-    const cells = rows.map((row) => row[i]), isWord = cells.some((cell) => cell !== null && typeof cell !== "number");
+    const cells = rows.map((row) => valueOf(row[i])), isWord = cells.some((cell) => cell !== null && typeof cell !== "number");
     const unit = column.unit || (isWord ? "" : "number");
     return { isWord, ...readableUnit(unit, d3.max(cells.filter((cell) => typeof cell === "number"), Math.abs) ?? 0) };
   });
@@ -30,19 +34,23 @@ function columnFormats(table) {
 function makeRow(table, formats, cells) {
   const element = make("tr");
   cells.forEach((cell, i) => {
-    const column = table.columns[i], { size, unit } = formats[i];
+    const column = table.columns[i], { size, unit } = formats[i], value = valueOf(cell);
     const shown = make(i === 0 ? "th" : "td", {
-      class: cell === null || typeof cell === "number" ? "number" : "word",
+      class: value === null || typeof value === "number" ? "number" : "word",
       "data-key": column.key,
-      "data-value": cell ?? "",
+      "data-value": value ?? "",
       "data-title": column.title,
       "data-view": column.view,
-      "data-unit": typeof cell === "number" && (size !== 1 || /^(ms|bytes)\b/.test(unit)) ? unit.split(" ")[0] : "",
-    }, numberText(typeof cell === "number" ? cell / size : cell));
+      "data-unit": typeof value === "number" && (size !== 1 || /^(ms|bytes)\b/.test(unit)) ? unit.split(" ")[0] : "",
+    }, cell?.text ?? numberText(typeof value === "number" ? value / size : value));
+    if (cell?.href) {
+      const address = cell.href.split("/").map(encodeURIComponent).join("/");
+      shown.replaceChildren(make("a", { href: address }, cell.text));
+    }
     if (i === 0) shown.scope = "row";
     element.append(shown);
   });
-  return { element, cells };
+  return { element, cells: cells.map(valueOf) };
 }
 
 // Buttons that choose the view.
