@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/memory/dram_tally.h"
 #include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
@@ -103,6 +104,7 @@ struct FrameResult {
   // and invocations of fragment shaders: how unevenly the work of cores is spread.
   std::vector<std::uint64_t> bin_operations, bin_invocations;
   CacheReach cache_reach;
+  std::vector<ArrayBytes> dram_arrays;  // of each stage, they add up to its dram_bytes
 };
 
 // Of colours up to 1: two roundings of half a unit in the last place, which is 2^-12.

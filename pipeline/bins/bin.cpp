@@ -19,6 +19,7 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
       memory_(framebuffer.memory_of_bin(context.run.memory, bins)) {
   if (context.sinks.weights || context.sinks.histories) observer_.emplace(context, tile);
   memory_.reach = &cache_reach_;
+  memory_.tally = &dram_tally_;
   if (context.sinks.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   if (keeps_pixels_on_chip()) holds(kOpenPixels, tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());

@@ -136,6 +136,7 @@ class Bin {
 
   // ---- What was recorded ----
   const DramLog* dram_log() const { return dram_log_ ? &*dram_log_ : nullptr; }  // null: it is not asked for
+  const DramTally& dram_tally() const { return dram_tally_; }
   // In which pass of the log each geometry pass begins, and in which one each pass of textures reads texels.
   const std::vector<std::uint32_t>& geometry_pass_starts() const { return geometry_pass_starts_; }
   const std::vector<std::uint32_t>& texture_pass_starts() const { return texture_pass_starts_; }
@@ -154,6 +155,7 @@ class Bin {
   std::optional<BinObserver> observer_;
   StageTimer timer_;
   std::optional<DramLog> dram_log_;
+  DramTally dram_tally_;
   CacheReach cache_reach_;
   MemorySystem memory_;                // with the place where this technique's pixels are
   std::vector<StageCounters> stages_;  // never grows, because stages hold references to their counters

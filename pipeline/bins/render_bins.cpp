@@ -73,13 +73,14 @@ DramTrace* dram_trace_of(const FrameContext& context) {
 // What one pass over the geometry costs, whatever the technique.
 struct GeometryPass {
   StageCounters setup, raster;
+  DramTally tally;
 
   // `first_pass`: of the frame, for the record of DRAM requests.
   GeometryPass(const FrameContext& context, StageId raster_stage, std::uint32_t first_pass)
       : setup(context.setup), raster{raster_stage}, trace_(dram_trace_of(context)), first_pass_(first_pass) {
     const std::uint64_t triangles = context.setup.items_out;
     record(DramTrace::Step::setup, 0, [&](DramLog* log) {
-      move_setup({context.run.memory, log}, context.setup.bytes_read, context.triangles.triangles.size(),
+      move_setup({context.run.memory, log, &tally}, context.setup.bytes_read, context.triangles.triangles.size(),
                  context.surface_bytes, setup);
     });
     raster.items_in = triangles;
@@ -88,12 +89,12 @@ struct GeometryPass {
 
   void add_list(const MemoryParameters& memory, const TriangleList& list, bool is_sorted, std::size_t bin) {
     raster.empty_tiles += list.empty();
-    record(DramTrace::Step::binning, bin, [&](DramLog* log) { write_list({memory, log}, list, raster); });
+    record(DramTrace::Step::binning, bin, [&](DramLog* log) { write_list({memory, log, &tally}, list, raster); });
     record(DramTrace::Step::lists, bin, [&](DramLog* log) {
       if (is_sorted) {
-        read_list({memory, log}, list, raster);
+        read_list({memory, log, &tally}, list, raster);
       } else {
-        read_bin({memory, log}, list, raster);
+        read_bin({memory, log, &tally}, list, raster);
       }
     });
   }
@@ -225,6 +226,8 @@ class FrameRecorder {
     for (StageCounters& stage : result_.stages)
       for (const StageCounters* const of_pass : {&pass.setup, &pass.raster})
         for (int i = 0; stage.stage.id == of_pass->stage.id && i < passes(stage.stage.pass); ++i) stage += *of_pass;
+    for (const Pass each : {Pass::prepass, Pass::main})
+      tally_.add(pass.tally, each, static_cast<std::uint64_t>(passes(each)));
     if (trace_) repeat_geometry();
     charge_texture_dram();
     charge_kept_in_l2(bins_in_work);
@@ -234,6 +237,7 @@ class FrameRecorder {
           {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
           {"bin_lists", list_bytes}};
     for (const auto& [name, bytes] : buffer_peaks_) result_.buffers.push_back({name, bytes, true});
+    result_.dram_arrays = tally_.sums();
     return std::move(result_);
   }
 
@@ -249,6 +253,7 @@ class FrameRecorder {
     {
       const std::lock_guard lock(mutex_);
       for (const StageCounters& stage : bin.stages()) *find_counters(result_.stages, stage.stage) += stage;
+      tally_.add(bin.dram_tally());
       for (const auto& [name, bytes] : bin.buffer_peaks()) {
         std::uint64_t& peak = buffer_peaks_[name];
         peak = std::max(peak, bytes);
@@ -289,6 +294,7 @@ class FrameRecorder {
     for (StageCounters& stage : result_.stages) {
       stage.dram_bytes += bytes[stage.stage.number()];
       stage.texture_dram_bytes += bytes[stage.stage.number()];
+      tally_.add(tally_.array("texels"), DramAccess::read, stage.stage, bytes[stage.stage.number()]);
     }
   }
 
@@ -307,8 +313,8 @@ class FrameRecorder {
         const auto missed = static_cast<std::uint64_t>(static_cast<double>(kept.requests) * part);
         DramLog log;
         StageCounters moved{kept.stage};
-        stream({memory, trace_ ? &log : nullptr}, DramAccess::read, {name_of(kept.stage)}, missed * memory.sector_bytes,
-               moved);
+        stream({memory, trace_ ? &log : nullptr, &tally_}, DramAccess::read, {name_of(kept.stage)},
+               missed * memory.sector_bytes, moved);
         find_counters(result_.stages, kept.stage)->dram_bytes += moved.dram_bytes;
         if (trace_) trace_->add(log, first_pass_, bin);
       }
@@ -345,6 +351,7 @@ class FrameRecorder {
   const FrameContext& context_;
   std::mutex mutex_;
   FrameResult result_;
+  DramTally tally_;
   glm::vec4 color_{0.0f};  // that the picture starts with
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
@@ -422,6 +429,7 @@ void run_on_tiles(const FrameContext& context, StageId stage, FrameResult& resul
                   const std::function<void(const Tile&, const BinStage&)>& work) {
   const std::vector<Tile> tiles = tile_grid(context, static_cast<int>(context.run.memory.bin_pixels)).tiles;
   std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{stage});
+  std::vector<DramTally> tallies(tiles.size());
   DramTrace* const trace = dram_trace_of(context);
   const std::uint32_t pass = trace ? trace->passes() : 0;
   on_threads(context.run.threads, [&] {
@@ -429,13 +437,16 @@ void run_on_tiles(const FrameContext& context, StageId stage, FrameResult& resul
       stop_if_cancelled(context.run);
       const StageTimer timer(context.sinks.timeline, tiles[i]);
       DramLog log;
-      const MemorySystem memory(context.run.memory, trace ? &log : nullptr);
+      const MemorySystem memory(context.run.memory, trace ? &log : nullptr, &tallies[i]);
       work(tiles[i], BinStage(of_tiles[i], timer, memory));
       if (trace) trace->add(log, pass, i);
     });
   });
   StageCounters& counters = result.stages.emplace_back(StageCounters{stage});
   for (const StageCounters& of_tile : of_tiles) counters += of_tile;
+  DramTally tally;
+  for (const DramTally& of_tile : tallies) tally.add(of_tile);
+  for (const ArrayBytes& bytes : tally.sums()) result.dram_arrays.push_back(bytes);
 }
 
 void copy_to_image(const std::vector<glm::vec4>& pixels, Image& image) {

@@ -87,7 +87,7 @@ void BlockCache::serve_request() {
 }
 
 void BlockCache::load(std::size_t block, Sectors missing, StageCounters& counters) {
-  if (!next_) return pass_on(DramAccess::read, block, missing, counters);
+  if (!next_) return pass_on(DramAccess::read, block, missing, false, counters);
   counters.l2_bytes += bytes_of(missing);
   next_->serve(block, missing, 0, 0, counters);
 }
@@ -120,7 +120,7 @@ BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, Sta
   const State state = states_[block];
   // A cleared block needs no fetch; a compressed one is fetched and unpacked whole.
   if (state != kRaw && !overwritten) {
-    pass_on(DramAccess::read, block, first_sectors(state), counters);
+    pass_on(DramAccess::read, block, first_sectors(state), true, counters);
     line.valid = all_sectors_;
   }
   return line;
@@ -132,20 +132,23 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
   if (compressed_bytes_ && line.valid == all_sectors_) {
     const std::uint32_t sectors = sectors_in(compressed_bytes_(line.block));
     if (sectors < population_count(all_sectors_)) {
-      pass_on(DramAccess::write, line.block, first_sectors(sectors), counters);
+      pass_on(DramAccess::write, line.block, first_sectors(sectors), true, counters);
       state = static_cast<State>(sectors);
       return;
     }
   }
   const Sectors written = state == kRaw ? line.dirty : all_sectors_;
-  pass_on(DramAccess::write, line.block, written, counters);
+  pass_on(DramAccess::write, line.block, written, false, counters);
   state = kRaw;
 }
 
 // To or from the next level.
-void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters) {
-  counters.dram_bytes += bytes_of(sectors);
-  if (level_ == Level::rop) counters.l2_bytes += bytes_of(sectors);
+void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, bool compressed,
+                         StageCounters& counters) {
+  const std::uint64_t bytes = bytes_of(sectors);
+  counters.dram_bytes += bytes;
+  if (level_ == Level::rop) counters.l2_bytes += bytes;
+  if (places_.tally) places_.tally->add(places_.array_of(block), access, counters.stage, bytes, compressed);
   if (places_.log && sectors != 0) record(access, block, sectors, counters);
 }
 
@@ -180,7 +183,7 @@ void BlockCache::stream_read(std::size_t block, StageCounters& counters) {
   const State state = states_[block];
   counters.sector_bytes += raw;
   if (level_ == Level::l2) counters.l2_bytes += raw;
-  pass_on(DramAccess::read, block, state == kRaw ? all_sectors_ : first_sectors(state), counters);
+  pass_on(DramAccess::read, block, state == kRaw ? all_sectors_ : first_sectors(state), state != kRaw, counters);
 }
 
 }  // namespace beampipe

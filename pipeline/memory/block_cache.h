@@ -161,7 +161,7 @@ class BlockCache {
   void link_lines();
   void use(Line& line);
   void write_back(const Line& line, StageCounters& counters);
-  void pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters);
+  void pass_on(DramAccess access, std::size_t block, Sectors sectors, bool compressed, StageCounters& counters);
   void record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters);
 
   bool modelled_;

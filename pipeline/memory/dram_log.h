@@ -6,14 +6,13 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/memory/dram_tally.h"
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 
 namespace beampipe {
 
 inline constexpr std::uint32_t kMaxBlockSectors = 8;
-
-enum class DramAccess : std::uint8_t { read, write };
 
 // Sectors [first, first + sectors) of an array, one after the other.
 struct DramRun {
@@ -61,16 +60,19 @@ class DramLog {
   std::vector<DramArray> arrays_;
 };
 
-// The memory system as a bin uses it: the parameters, and where it records its DRAM requests and the reach of caches.
+// The memory system as a bin uses it: the parameters, and where it records its DRAM requests, their sums by array, and
+// the reach of caches.
 struct MemorySystem : MemoryParameters {
   DramLog* log = nullptr;       // null: nowhere
+  DramTally* tally = nullptr;   // likewise
   CacheReach* reach = nullptr;  // likewise
 
-  MemorySystem(const MemoryParameters& parameters = {}, DramLog* requests = nullptr)
-      : MemoryParameters(parameters), log(requests) {}
+  MemorySystem(const MemoryParameters& parameters = {}, DramLog* requests = nullptr, DramTally* sums = nullptr)
+      : MemoryParameters(parameters), log(requests), tally(sums) {}
 };
 
-// Where the blocks of a cache lie: block b at line b of `array` or, if `lines` are given, at lines[b].
+// Where the blocks of a cache lie: block b at line b of `array` or, if `lines` are given, at lines[b]. A cache may
+// stand before several arrays, which follow each other.
 struct BlockPlaces {
   struct Line {
     std::uint16_t array;
@@ -81,9 +83,24 @@ struct BlockPlaces {
   std::uint16_t array = 0;
   std::vector<Line> lines = {};
 
+  struct Part {
+    std::size_t first_block;
+    std::uint16_t array;
+  };
+  DramTally* tally = nullptr;    // null: nothing is added up
+  std::vector<Part> parts = {};  // of the cache, by array of the tally
+
   BlockPlaces() = default;
-  BlockPlaces(const MemorySystem& memory, std::string_view name, bool of_bins) : log(memory.log) {
+  BlockPlaces(const MemorySystem& memory, std::string_view name, bool of_bins) : log(memory.log), tally(memory.tally) {
     if (log) array = log->array(name, of_bins);
+    if (tally) parts.push_back({0, tally->array(name)});
+  }
+
+  // Of the tally.
+  std::uint16_t array_of(std::size_t block) const {
+    std::size_t part = parts.size() - 1;
+    while (parts[part].first_block > block) --part;
+    return parts[part].array;
   }
 };
 

@@ -54,6 +54,7 @@ void TriangleFetches::place_records(const TriangleList& list, std::string_view a
                                     std::uint32_t line_bytes, std::vector<std::uint32_t>& offsets, Places& places) {
   DramLog* const log = places.lines.log;
   const std::uint16_t number = log ? log->array(array, false) : 0;
+  if (places.lines.tally) places.lines.parts.push_back({places.end / line_bytes, places.lines.tally->array(array)});
   std::uint64_t last_line = ~std::uint64_t{0};
   for (const std::uint32_t record : list) {
     const std::uint64_t at = std::uint64_t{record} * record_bytes;
@@ -71,6 +72,7 @@ void TriangleFetches::place_records(const TriangleList& list, std::string_view a
 TriangleFetches::Places TriangleFetches::places_of(const MemorySystem& memory, const TriangleList& list) const {
   Places places;
   places.lines.log = memory.log;
+  places.lines.tally = memory.tally;
   const std::uint32_t line_bytes = memory.l2.line_bytes;
   place_records(list, kSetupArray, sizeof(SetupTriangle), line_bytes, places.setup, places);
   place_records(list, kAttributesArray, sizeof(FlatAttributes), line_bytes, places.attributes, places);

@@ -17,19 +17,29 @@ namespace beampipe {
 struct ArrayName {
   std::string_view name;
   bool of_bins = true;
+
+  // In the memory system's tally.
+  std::uint16_t number(const MemorySystem& memory) const { return memory.tally ? memory.tally->array(name) : 0; }
 };
 
-// Reads or writes `bytes` in a row: whole sectors, each moved once, of an array from its sector `first` on.
-inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint64_t bytes,
-                   StageCounters& counters, std::uint64_t first = 0) {
+// Reads or writes `bytes` in a row: whole sectors, each moved once, of an array from its sector `first` on. `number`:
+// that of the array.
+inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint16_t number,
+                   std::uint64_t bytes, StageCounters& counters, std::uint64_t first = 0) {
   if (!memory.modelled) return;
   const std::uint64_t sectors = memory.sectors(bytes);
   counters.sector_bytes += sectors * memory.sector_bytes;
   counters.l2_bytes += sectors * memory.sector_bytes;
   counters.dram_bytes += sectors * memory.sector_bytes;
+  if (memory.tally) memory.tally->add(number, access, counters.stage, sectors * memory.sector_bytes);
   if (memory.log)
     memory.log->add(memory.log->array(array.name, array.of_bins), access, first, static_cast<std::uint32_t>(sectors),
                     counters.stage);
+}
+
+inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint64_t bytes,
+                   StageCounters& counters) {
+  stream(memory, access, array, array.number(memory), bytes, counters);
 }
 
 // The same, if L2 holds them all.
@@ -45,20 +55,21 @@ inline void stream_in_l2(const MemoryParameters& memory, std::uint64_t bytes, St
 class RecordsInOrder {
  public:
   RecordsInOrder(const MemorySystem& memory, std::string_view array, std::uint32_t record_bytes)
-      : memory_(memory), array_{array, false}, record_bytes_(record_bytes) {}
+      : memory_(memory), array_{array, false}, number_(array_.number(memory)), record_bytes_(record_bytes) {}
 
   void read(std::uint32_t record, StageCounters& counters) {
     const std::uint64_t begin = std::uint64_t{record} * record_bytes_, end = begin + record_bytes_;
     const std::uint64_t first = std::max(begin >> std::countr_zero(memory_.sector_bytes), read_to_);
     const std::uint64_t end_sector = memory_.sectors(end);
     if (end_sector <= first) return;
-    stream(memory_, DramAccess::read, array_, (end_sector - first) * memory_.sector_bytes, counters, first);
+    stream(memory_, DramAccess::read, array_, number_, (end_sector - first) * memory_.sector_bytes, counters, first);
     read_to_ = end_sector;
   }
 
  private:
   MemorySystem memory_;
   ArrayName array_;
+  std::uint16_t number_;
   std::uint64_t record_bytes_, read_to_ = 0;  // all sectors below it have been read or skipped
 };
 

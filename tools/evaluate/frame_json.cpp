@@ -90,11 +90,16 @@ const Form<StageCounters>& stage_form() {
   return form;
 }
 
-StageCounters stage_of(const Json& json) {
+// Of a record about a stage.
+Stage stage_named(const Json& json) {
   const std::string name = json.at("stage").get<std::string>();
   const std::optional<Stage> known = find_stage(name);
   if (!known) throw std::runtime_error("\"stage\": expected the name of a stage, found \"" + name + '"');
-  StageCounters stage{*known};
+  return *known;
+}
+
+StageCounters stage_of(const Json& json) {
+  StageCounters stage{stage_named(json)};
   for (const CounterInfo& counter : stage_counters()) {
     const auto [group, key] = keys_of(counter);
     const Json& object = group.empty() ? json : json.at(group);
@@ -149,6 +154,22 @@ Form<Buffer> buffer_form() {
       .written(
           "held", [](const Buffer& buffer) { return buffer.per_bin ? kHeldByBin : "frame"; },
           form::one_of({"frame", kHeldByBin}), "Whether each bin has one, or the frame.");
+}
+
+Form<ArrayBytes> array_form() {
+  return ObjectForm<ArrayBytes>()
+      .written(
+          "stage", [](const ArrayBytes& each) { return std::string(name_of(each.stage)); }, form::text(),
+          "That moves them.")
+      .written("array", &ArrayBytes::array, form::text(), "Where in memory they lie.")
+      .written("read", &ArrayBytes::read, form::count(), "Bytes from DRAM.")
+      .written("written", &ArrayBytes::written, form::count(), "Bytes to DRAM.")
+      .written("compressed", &ArrayBytes::compressed, form::count(), "Those of both that are of compressed blocks.");
+}
+
+ArrayBytes array_bytes_of(const Json& json) {
+  const auto bytes = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
+  return {stage_named(json), json.at("array").get<std::string>(), bytes("read"), bytes("written"), bytes("compressed")};
 }
 
 Form<PixelCounterStats> statistics_form() {
@@ -211,7 +232,9 @@ Form<FrameOf> make_frame_form() {
       .written("bin_operations", filled(&Frame::bin_operations), form::list(form::count()),
                "Operations of each bin in stages that can be done in shaders, row by row.")
       .written("bin_invocations", filled(&Frame::bin_invocations), form::list(form::count()),
-               "Invocations of fragment shaders that each bin starts, row by row.");
+               "Invocations of fragment shaders that each bin starts, row by row.")
+      .written("dram_arrays", filled(&Frame::dram_arrays), form::list(array_form()),
+               "What each stage moves to and from DRAM, by array.");
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
     for (const CounterInfo& counter : stage_counters())
       if (counter.name == std::string_view(column))
@@ -311,6 +334,8 @@ FrameReport frame_of(const Json& json) {
        {std::pair{"bin_operations", &frame.bin_operations}, {"bin_invocations", &frame.bin_invocations}})
     if (const Json* const list = json.find(key))
       for (const Json& of_bin : list->elements()) of_bins->push_back(of_bin.get<std::uint64_t>());
+  if (const Json* const arrays = json.find("dram_arrays"))
+    for (const Json& each : arrays->elements()) frame.dram_arrays.push_back(array_bytes_of(each));
   for (const Json& buffer : json.at("buffers").elements())
     if (buffer.at("name") != kABuffer)
       frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),

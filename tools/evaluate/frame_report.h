@@ -59,6 +59,7 @@ struct FrameReport {
   std::uint64_t bin_pixels = 0;  // of the largest bin
   // As in FrameResult.
   std::vector<std::uint64_t> bin_operations, bin_invocations;
+  std::vector<ArrayBytes> dram_arrays;
 
   // What the pixels of a bin take on chip; 0 if they are in memory.
   double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/energy.h"
@@ -404,6 +405,49 @@ std::vector<Json> saved_records(const Json& results) {
   return records;
 }
 
+// Of each technique, stage and array; means over the frames.
+std::vector<Json> array_records(const Json& results) {
+  std::vector<Json> records;
+  for (const Json& result : results.elements()) {
+    const std::vector<Json>& frames = result.at("frames").elements();
+    std::map<std::pair<std::string, std::string>, Json> sums;
+    std::vector<std::string> stages;
+    for (const Json& frame : frames) {
+      const Json arrays = frame.value("dram_arrays", Json::array());
+      for (const Json& each : arrays.elements()) {
+        const auto stage = each.at("stage").get<std::string>();
+        if (std::ranges::find(stages, stage) == stages.end()) stages.push_back(stage);
+        Json& sum = sums[{stage, each.at("array").get<std::string>()}];
+        for (const char* key : {"read", "written", "compressed"})
+          sum[key] = sum.value(key, 0.0) + each.at(key).get<double>() / static_cast<double>(frames.size());
+      }
+    }
+    for (const std::string& stage : stages)
+      for (const auto& [place, sum] : sums) {
+        if (place.first != stage) continue;
+        Json record = sum;
+        record["technique"] = result.at("technique");
+        record["stage"] = stage, record["array"] = place.second;
+        record["share"] =
+            sum.at("compressed").get<double>() / (sum.at("read").get<double>() + sum.at("written").get<double>());
+        records.push_back(std::move(record));
+      }
+  }
+  return records;
+}
+
+const std::vector<Source> kArrayColumns = {
+    {{"technique", "technique", "", "The technique's spec."}, "/technique"},
+    {{"stage", "stage", "", "The stage that moves the bytes."}, "/stage"},
+    {{"array", "array", "", "Where in memory they lie."}, "/array"},
+    {{"read_bytes", "read", "bytes", "Read from DRAM."}, "/read"},
+    {{"written_bytes", "written", "bytes", "Written to DRAM."}, "/written"},
+    {{"compressed", "compressed", "share",
+      "The part of these bytes that is of compressed blocks; the rest is raw. "
+      "Blocks that are cleared move nothing."},
+     "/share"},
+};
+
 // The published figures about this trace. Those that are true by definition are about the program.
 std::vector<Json> claim_records(const Json& report) {
   std::vector<Json> records;
@@ -446,6 +490,8 @@ std::vector<Table> report_tables(const ReportFile& report) {
   if (is_sequence)
     tables.push_back(
         make_table("frames", "Frames", "", with_measures(with_modelled(kFrameColumns, report, "ms", "mJ")), frames));
+  const std::vector<Json> arrays = array_records(results);
+  if (!arrays.empty()) tables.push_back(make_table("dram_arrays", "DRAM bytes by array", mean, kArrayColumns, arrays));
   const std::vector<Json> saved = saved_records(results);
   if (!saved.empty()) tables.push_back(make_table("saved", "Saved work", mean, saved_columns(), saved));
   tables.push_back(make_table("framebuffer", "Framebuffers", "", kSurfaceColumns, members(results, "framebuffer")));
