@@ -3,10 +3,22 @@
 #include <algorithm>
 
 #include "tools/evaluate/known_specs.h"
+#include "tools/evaluate/modelled_time.h"
 #include "tools/report/colors.h"
+#include "tools/report/finished_run.h"
+#include "tools/report/times_text.h"
 
 namespace beampipe {
 namespace {
+
+// The modelled times with their ranges; none if nothing was modelled, or another version counted other things.
+Json times_of(const ReportFile& report) {
+  try {
+    return times_json(finished_run(report));
+  } catch (const ReportError&) {
+    return Json::array();
+  }
+}
 
 Json card_of(const TechniqueSummary& summary, const std::string& color) {
   Json card = {{"technique", summary.spec},
@@ -26,6 +38,16 @@ Json card_of(const TechniqueSummary& summary, const std::string& color) {
   return card;
 }
 
+Json with_ranges(Json card, const Json& times) {
+  for (const Json& row : times.elements())
+    if (row.at("technique") == card.at("technique"))
+      for (const TimeKind& kind : kTimes) {
+        const std::string key = std::string(kind.key) + "_interval";
+        card["modelled_ms"][row.at("implementation").get<std::string>()][key] = row.at(key);
+      }
+  return card;
+}
+
 }  // namespace
 
 std::string baseline_of(const ReportFile& report) {
@@ -41,12 +63,13 @@ std::string baseline_of(const ReportFile& report) {
 Json report_cards(const ReportFile& report) {
   const std::string baseline = baseline_of(report);
   Json json = {{"baseline", baseline}, {"implementations", implementations_of(report)}, {"cards", Json::array()}};
+  const Json times = times_of(report);
   std::vector<std::string> specs;
   for (const TechniqueSummary& summary : report.techniques) specs.push_back(summary.spec);
   for (const bool is_baseline : {true, false})
     for (const TechniqueSummary& summary : report.techniques)
       if ((summary.spec == baseline) == is_baseline)
-        json["cards"].push_back(card_of(summary, technique_color(specs, summary.spec)));
+        json["cards"].push_back(with_ranges(card_of(summary, technique_color(specs, summary.spec)), times));
   return json;
 }
 

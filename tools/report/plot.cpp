@@ -137,7 +137,7 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
   ScatterPlot plot{.name = modelled ? "speed_" + implementation : "speed",
                    .title = "Time and error: " + scenes_text(reports),
                    .x_label = modelled ? "modelled time (" + name_of(reports.front(), implementation) +
-                                             ", stages overlap), ms per frame"
+                                             ", all stages at once), ms per frame"
                                        : "wall time of the simulator, ms per frame",
                    .y_label = "RMSE, linear light (lower is better)",
                    .series = {msaa_line()}};

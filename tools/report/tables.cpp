@@ -483,9 +483,7 @@ std::vector<Table> report_tables(const ReportFile& report) {
                               with_measures(with_modelled(kTechniqueColumns, report, "ms per frame", "mJ per frame")),
                               technique_records(report)));
   tables.push_back(make_table("stages", "Stages",
-                              mean +
-                                  "Bytes, times and energy add up to those of the technique, times to the sum and not "
-                                  "to the overlap.",
+                              mean + "Bytes, times and energy add up to those of the technique, times to that in turn.",
                               stage_columns(report), stage_records(report)));
   if (is_sequence)
     tables.push_back(

@@ -346,6 +346,8 @@ class ReportPage(PageTest):
         self.assertEqual([title.split()[0] for title in self.texts(".card h3")], ["msaa:8", *[s for s in TECHNIQUES if s != "msaa:8"]])
         self.assertEqual(self.card("msaa:8")["DRAM"][1], "", "the baseline has no multiples")
         self.assertIn("multiples are of msaa:8", self.texts("#cost-note")[0])
+        said = subprocess.run([BEAMPIPE, "model", self.folder, "--json"], check=True, capture_output=True, text=True).stdout
+        times = {(row["technique"], row["implementation"]): row for row in json.loads(said)[0]["times"]}
         for way in ["shaders", "fixed_function"]:
             self.browser.run("const s = document.getElementById('implementation'); s.value = arguments[0];"
                              "s.dispatchEvent(new Event('change'))", way)
@@ -364,6 +366,10 @@ class ReportPage(PageTest):
                         self.assertLessEqual(abs(ratio * value(self.results["msaa:8"]) / value(result) - 1), 0.06, f"{spec} {name}")
                 units = [frame["modelled_ms"][way]["busiest"] for frame in result["frames"]]
                 self.assertEqual(card["time"][2], "bottleneck: " + ", ".join(dict.fromkeys(units)))
+                low, high = times[spec, way]["at_once_interval"]
+                self.assertEqual(card["time"][3], f"range: {self.short(low)} to {self.short(high)} ms")
+                low, high = times[spec, way]["in_turn_interval"]
+                self.assertIn(f"({self.short(low)} to {self.short(high)})", card["time"][5])
             self.assertLessEqual({f"time_{way}", f"speed_{way}"}, set(self.plots()), "the choice holds for the plots as well")
 
     def test_conditions_tell_what_was_drawn_and_how(self):

@@ -3,6 +3,14 @@
 // The technique's colour in cards, plots and maps.
 const colorOf = (technique) => data.summary.cards.find((card) => card.technique === technique)?.color ?? "transparent";
 
+// Under the number of a time: what takes so long, its range, and the other two times with theirs.
+function timeLines(time) {
+  const range = (key) => (time[`${key}_interval`] ?? []).map(shortText).join(" to ");
+  const line = (title, key) => `${title}: ${shortText(time[key])} ms${range(key) && ` (${range(key)})`}`;
+  return [`bottleneck: ${time.busiest}`, ...(range("at_once") ? [`range: ${range("at_once")} ms`] : []),
+    line("on cores", "on_cores"), line("in turn", "in_turn")];
+}
+
 // What a card lists: a name, the number, its text, and more lines that explain it.
 function cardRows(card, implementation) {
   const time = card.modelled_ms?.[implementation], bound = { exact: "", "at least": "≥ ", "at most": "≤ " };
@@ -11,7 +19,7 @@ function cardRows(card, implementation) {
     ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin`]],
     ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, ["framebuffer, A-buffer"]],
     ["time", time?.at_once, (value) => `${shortText(value)} ms`,
-      [`bottleneck: ${time?.busiest}`, `on cores: ${shortText(time?.on_cores ?? 0)} ms`, `in turn: ${shortText(time?.in_turn ?? 0)} ms`]],
+      time ? timeLines(time) : []],
     ["RMSE", card.rmse, shortText, []],
     ["EMR", card.emr, (value) => bound[card.emr_bound] + shortText(value), []],
   ];
@@ -40,8 +48,9 @@ function startCards(summary) {
   const select = byId("implementation"), [baseline] = summary.cards;
   fillSelect(select, summary.implementations);
   byId("implementations").hidden = summary.implementations.length === 0;
-  byId("cost-note").textContent = summary.cards.length === 1 ? "Costs are per frame. Times: all units at once and evenly; bins one by one on cores; and one stage after the other."
-    : `Costs are per frame; multiples are of ${summary.baseline}. Times: all units at once and evenly; bins one by one on cores; and one stage after the other.`;
+  byId("cost-note").textContent = (summary.cards.length === 1 ? "Costs are per frame." : `Costs are per frame; multiples are of ${summary.baseline}.`)
+    + " Times: all units at once and evenly; bins one by one on cores; and one stage after the other. Nine in ten lie in the"
+    + " ranges, if rates are drawn from those of the description.";
   const show = () => byId("cards").replaceChildren(...summary.cards.map((card) => makeCard(card, baseline, select.value)));
   select.addEventListener("change", show);
   show();
