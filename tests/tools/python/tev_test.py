@@ -21,8 +21,9 @@ LARGE = (1400, 1200)  # more than the buffers of a connection hold
 
 @contextlib.contextmanager
 def viewer(serve):
-    """HOST:PORT of a server that calls serve() with its only connection, and a list of what that returns."""
-    results = []
+    """HOST:PORT of a server, and a list of what serve() returns. That gets the only connection, and an event that is set
+    at the end of the context."""
+    results, at_end = [], threading.Event()
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 16)
         listener.bind(("127.0.0.1", 0))
@@ -31,15 +32,18 @@ def viewer(serve):
         def work():
             connection, _ = listener.accept()
             with connection:
-                results.append(serve(connection))
+                results.append(serve(connection, at_end))
 
         thread = threading.Thread(target=work, daemon=True)
         thread.start()
-        yield f"127.0.0.1:{listener.getsockname()[1]}", results
+        try:
+            yield f"127.0.0.1:{listener.getsockname()[1]}", results
+        finally:
+            at_end.set()
         thread.join(60)
 
 
-def read_all(connection):
+def read_all(connection, _):
     return b"".join(iter(lambda: connection.recv(1 << 20), b""))
 
 
@@ -102,6 +106,8 @@ class Tev(InFolder):
         scene = ["make", "fence", "--triangles", "1000"]
         cls.run_program(*scene, "--width", "33", "--height", "21", "--frames", "2", "--pan", "0.3,0.1", "-o", "small.json")
         cls.run_program(*scene, "--width", str(LARGE[0]), "--height", str(LARGE[1]), "-o", "large.json")
+        cls.run_large = ["run", "large.json", "-t", "msaa:1", "msaa:2", "-o"]
+        cls.run_program(*cls.run_large, "alone")
 
     def render(self, *arguments):
         """What the program prints on stderr."""
@@ -126,36 +132,32 @@ class Tev(InFolder):
 
     def test_large_pictures_come_in_several_packets(self):
         with viewer(read_all) as (address, streams):
-            self.render("run", "large.json", "-t", "msaa:1", "beam", "--tev", address, "-o", "large")
-        self.expect_written(pictures_in(streams[0]), "large", ["large/msaa:1/frame 0", "large/beam/frame 0"])
+            self.render(*self.run_large, "large", "--tev", address)
+        self.expect_written(pictures_in(streams[0]), "large", ["large/msaa:1/frame 0", "large/msaa:2/frame 0"])
 
     def test_results_do_not_say_that_they_were_shown(self):
         command = ["run", "small.json", "-t", "beam", "-o"]
-        self.render(*command, "alone")
+        self.render(*command, "unseen")
         with viewer(read_all) as (address, _):
             self.render(*command, "shown", "--tev", address)
-        alone, shown = (beampipe.Report(self.folder / folder).json["made_by"] for folder in ("alone", "shown"))
-        self.assertEqual(alone, shown)
+        unseen, shown = (beampipe.Report(self.folder / folder).json["made_by"] for folder in ("unseen", "shown"))
+        self.assertEqual(unseen, shown)
         self.assertNotIn("tev", (self.folder / "shown/report.json").read_text())
-        self.assertIn("report.json", self.render(*command, "shown", "--resume") + self.run_program(*command, "shown", "--resume"))
+        self.assertIn("already finished", self.run_program(*command, "shown", "--resume"))
 
     def expect_loss(self, serve, reason):
         with viewer(serve) as (address, _):
-            errors = self.render("run", "large.json", "-t", "msaa:1", "msaa:2", "--tev", address, "-o", "lost")
+            errors = self.render(*self.run_large, "lost", "--tev", address)
             self.assertRegex(errors, f"^beampipe: note: tev at {address} shows no more pictures: ({reason})\n$")
-        self.run_program("run", "large.json", "-t", "msaa:1", "msaa:2", "-o", "alone")
         lost, alone = (sorted(pathlib.Path(self.folder / folder).rglob("*.exr")) for folder in ("lost", "alone"))
         self.assertEqual([file.name for file in lost], [file.name for file in alone])
         self.assertEqual([file.read_bytes() for file in lost], [file.read_bytes() for file in alone])
 
     def test_a_run_goes_on_when_the_viewer_is_closed(self):
-        self.expect_loss(lambda connection: connection.recv(1000), "Connection reset by peer|Broken pipe")
+        self.expect_loss(lambda connection, _: connection.recv(1000), "Connection reset by peer|Broken pipe")
 
     def test_a_run_goes_on_when_the_viewer_hangs(self):
-        finished = threading.Event()
-
-        self.addCleanup(finished.set)
-        self.expect_loss(lambda connection: finished.wait(60), "Connection timed out")
+        self.expect_loss(lambda _, at_end: at_end.wait(60), "Connection timed out")
 
     def test_a_viewer_that_is_not_there_is_an_error_before_anything_is_rendered(self):
         with socket.socket() as silent:  # bound, so that nobody else listens there
@@ -163,7 +165,7 @@ class Tev(InFolder):
             address = f"127.0.0.1:{silent.getsockname()[1]}"
             for command in ("run", "compare"):
                 errors = self.run_program(command, "small.json", "-t", "beam", "--tev", address, "-o", "none", fails=1)
-                self.assertEqual(errors, f"beampipe: {address}: expected the image viewer tev to listen there: "
+                self.assertEqual(errors, f"beampipe: error: {address}: expected the image viewer tev to listen there: "
                                          "Connection refused\n")
         self.assertFalse((self.folder / "none").exists())
 
@@ -171,7 +173,7 @@ class Tev(InFolder):
         for address in ("localhost", ":14158", "localhost:", "localhost:0", "localhost:65536", "localhost:1x", "a:b:1",
                         "localhost:-1"):
             errors = self.run_program("run", "small.json", "-t", "beam", f"--tev={address}", "-o", "none", fails=2)
-            self.assertRegex(errors, f"^beampipe: --tev {address}: expected HOST:PORT, such as localhost:14158[^\n]*\n$")
+            self.assertRegex(errors, f"^beampipe: error: --tev {address}: expected HOST:PORT, such as localhost:14158[^\n]*\n$")
         self.assertFalse((self.folder / "none").exists())
 
 
