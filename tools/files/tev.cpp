@@ -76,8 +76,10 @@ TevViewer::TevViewer(const std::string& host, const std::string& port)
   auto& stream = connection_->stream;
   stream.expires_after(kPatience);
   stream.connect(host, port);
-  if (!stream)
-    throw std::runtime_error(address_ + ": expected the image viewer tev to listen there: " + stream.error().message());
+  boost::system::error_code error = stream.error(), unconnected;
+  stream.socket().remote_endpoint(unconnected);
+  if (!error && unconnected) error = boost::asio::error::timed_out;  // of which the stream says nothing
+  if (error) throw std::runtime_error(address_ + ": expected the image viewer tev to listen there: " + error.message());
 }
 
 TevViewer::~TevViewer() = default;
