@@ -169,6 +169,18 @@ class Tev(InFolder):
                                          "Connection refused\n")
         self.assertFalse((self.folder / "none").exists())
 
+    def test_a_viewer_that_does_not_answer_is_an_error(self):
+        with contextlib.ExitStack() as sockets:
+            silent = sockets.enter_context(socket.create_server(("127.0.0.1", 0), backlog=0))
+            for _ in range(3):  # fill its queue, so that Linux lets later ones wait
+                early = sockets.enter_context(socket.socket())
+                early.setblocking(False)
+                early.connect_ex(silent.getsockname())
+            errors = self.run_program("run", "small.json", "-t", "beam", "--tev", f"127.0.0.1:{silent.getsockname()[1]}", "-o",
+                                      "none", fails=1)
+        self.assertRegex(errors, "expected the image viewer tev to listen there: Connection timed out\n$")
+        self.assertFalse((self.folder / "none").exists())
+
     def test_addresses_are_a_host_and_a_port(self):
         for address in ("localhost", ":14158", "localhost:", "localhost:0", "localhost:65536", "localhost:1x", "a:b:1",
                         "localhost:-1"):
