@@ -49,6 +49,16 @@ MemoryParameters memory_of(const RunArguments& arguments, const Hardware& hardwa
   return memory;
 }
 
+std::shared_ptr<TevViewer> connect_tev(const std::string& address) {
+  const std::size_t colon = std::min(address.find(':'), address.size());
+  const std::string host = address.substr(0, colon), port = address.substr(std::min(colon + 1, address.size()));
+  std::uint16_t number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (host.empty() || error != std::errc() || end != port.data() + port.size() || number == 0)
+    throw UsageError("--tev " + address + ": expected HOST:PORT, such as localhost:14158");
+  return std::make_shared<TevViewer>(host, port);
+}
+
 }  // namespace
 
 void add_run_arguments(Command& command, RunArguments& arguments) {
@@ -93,6 +103,10 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       "--trace-events", arguments.trace_events,
       "write a timeline of the stages, by tile and thread, to this file outside the output folder; ui.perfetto.dev "
       "shows it");
+  command.add(
+      "--tev", arguments.tev,
+      "HOST:PORT of the image viewer tev (its own default is localhost:14158), which shows pictures as they are "
+      "written");
   command.add_flag(
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
@@ -128,6 +142,7 @@ RunPlan make_plan(const RunArguments& arguments) {
                        ": expected techniques that work without bins, such as msaa:8, because " + plan.hardware.named +
                        " has none");
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
+  if (!arguments.tev.empty()) plan.viewer = connect_tev(arguments.tev);
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());

@@ -15,7 +15,7 @@ namespace beampipe {
 
 // The arguments as the user wrote them.
 struct RunArguments {
-  std::string trace, output, frames, trace_events;
+  std::string trace, output, frames, trace_events, tev;
   HardwareOptions hardware;
   TraceView view;
   std::vector<std::string> specs;
@@ -31,8 +31,8 @@ struct RunArguments {
 // `arguments` must live until the command line is parsed.
 void add_run_arguments(Command& command, RunArguments& arguments);
 
-// Reads the trace and chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error if a
-// frame needs more memory than the machine has.
+// Reads the trace, chooses the instruction set and connects with the viewer. Throws UsageError, SpecError, TraceError,
+// or std::runtime_error if a frame needs more memory than the machine has or the viewer does not answer.
 RunPlan make_plan(const RunArguments& arguments);
 
 // The full name of a file that an option names, which must be neither the trace nor in the output folder. `option`:

@@ -10,6 +10,7 @@
 #include "stages/geometry/draw_notes.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/picture_cache.h"
+#include "tools/files/tev.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -28,6 +29,7 @@ struct RunPlan {
   FrameSinks sinks;
   std::vector<DrawNote> notes;                   // of `frames`
   std::shared_ptr<const PictureCache> pictures;  // of the reference; null: none are kept
+  std::shared_ptr<TevViewer> viewer;             // shows pictures as they are written; null: none does
   bool keeps_ladder = false;                     // are those of the MSAA ladder kept there, too?
 };
 
