@@ -27,7 +27,7 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
 // Throws std::runtime_error if memory is modelled without bins, and the plan cannot do without.
 TileGrid bin_grid(const FrameContext& context, const BinPlan& plan, int bin_size) {
   const MemoryParameters& memory = context.run.memory;
-  if (memory.modelled && !memory.binned) {
+  if (memory.draws_unbinned()) {
     if (plan.framebuffer.needs_bins) throw std::runtime_error("the technique needs bins; the memory system has none");
     const auto side = static_cast<int>(std::max(context.frame.width, context.frame.height));
     return {context.frame, side + side % 2};
@@ -232,7 +232,7 @@ class FrameRecorder {
     charge_texture_dram();
     charge_kept_in_l2(bins_in_work);
     const std::uint64_t triangles = context_.triangles.triangles.size();
-    if (context_.run.memory.binned)
+    if (!context_.run.memory.draws_unbinned())
       result_.buffers = {
           {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
           {"bin_lists", list_bytes}};

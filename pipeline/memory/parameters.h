@@ -1,7 +1,7 @@
 // Every parameter of the modelled memory system, with its source.
 //
 // The model follows a binning rasterizer, which draws all triangles of one bin in order and then goes on to the next
-// bin. (Without bins the frame is the only one.) Every class of surface has a cache, which is empty at the start of a
+// bin; without bins the frame is the only one. Every class of surface has a cache, which is empty at the start of a
 // bin. At the end of each pass over the frame
 // dirty lines are written back, because the next pass starts with another bin. Requests that hit their cache go no
 // further; misses and evictions go to L2, and those of L2 go to DRAM. Data that passes from stage to stage stays in
@@ -103,13 +103,14 @@ struct MemoryParameters {
   std::uint32_t on_chip_bytes = 96 * 1024, bins_per_core = 2, cores = 80;
 
   // Are triangles sorted into bins? If not, each goes from setup to the raster on chip and is drawn over the whole
-  // frame before the next one, and no triangle is looked at again. Only some techniques can do that
+  // frame before the next one, and none is looked at again in that pass. Only some techniques can do that
   // (Framebuffer::needs_bins).
   bool binned = true;
 
   // The most pixels on each side of a bin, at most kBinSize. Techniques whose bins are smaller keep them.
   std::uint32_t bin_pixels = kBinSize;
 
+  bool draws_unbinned() const { return modelled && !binned; }
   bool stores_triangles() const { return modelled && binned; }
 
   // The most bins of so many pixels that a core works on at a time: `bins_per_core` of 32 x 32, and of smaller ones as

@@ -64,6 +64,9 @@ void write_overview(const ReportArguments& arguments, InterruptGate& gate) {
   const std::filesystem::path file = std::filesystem::absolute(arguments.output);
   if (file.extension() != ".html")
     throw UsageError("--output " + arguments.output + ": expected a name that ends in .html");
+  for (const std::string& folder : arguments.folders)
+    if (std::filesystem::weakly_canonical(file) == std::filesystem::weakly_canonical(folder) / "report.html")
+      throw UsageError("--output " + arguments.output + ": expected another name than that of the run's own page");
   require_writable_file(file);
   std::string command = "beampipe report";
   std::vector<ReportFile> reports;

@@ -128,7 +128,7 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory) {
 }
 
 bool lacks_bins(const MemoryParameters& memory, const Technique& technique) {
-  return memory.modelled && !memory.binned && technique.framebuffer.needs_bins && !is_reference(technique.spec);
+  return memory.draws_unbinned() && technique.framebuffer.needs_bins && !is_reference(technique.spec);
 }
 
 namespace {

@@ -154,10 +154,16 @@ bool has_stage(const std::vector<StageCounters>& stages, StageId id) {
   return std::any_of(stages.begin(), stages.end(), [id](const auto& s) { return s.stage.id == id; });
 }
 
+// The bins that have some of this work, at least 1.
+double count_working(std::span<const std::uint64_t> bins) {
+  const auto idle = std::count(bins.begin(), bins.end(), 0u);
+  return std::max(static_cast<double>(bins.size()) - static_cast<double>(idle), 1.0);
+}
+
 // What a stage needs to know of its frame.
 struct FrameKind {
   BinSize bin;
-  double bins = 1;  // that have work
+  double bins = 1, shaded_bins = 1;  // all that have work, and those in which something is shaded
   bool has_light = false;
   bool has_rops = true;  // the colours that are shaded go to ROPs
 };
@@ -171,10 +177,16 @@ bool works_by_pixel(StageId id) {
          id == StageId::windows;
 }
 
-// That a stage starts in the mean bin.
-double threads_of_bin(const StageCounters& stage, const FrameKind& frame) {
+// That a stage starts in all.
+double threads_of_frame(const StageCounters& stage) {
   const bool is_shading = info_of(stage.stage.id).group == StageGroup::shading;
-  const double items = static_cast<double>(is_shading ? stage.lanes_issued : stage.items_in) / frame.bins;
+  return static_cast<double>(is_shading ? stage.lanes_issued : stage.items_in);
+}
+
+// The same in the mean bin. Pictures are made of empty bins, too.
+double threads_of_bin(const StageCounters& stage, const FrameKind& frame) {
+  const bool is_picture = info_of(stage.stage.id).group == StageGroup::picture;
+  const double items = threads_of_frame(stage) / (is_picture ? frame.bins : frame.shaded_bins);
   return works_by_pixel(stage.stage.id) ? std::min(items, frame.bin.pixels) : items;
 }
 
@@ -186,7 +198,7 @@ double threads_in_flight(const Hardware& hardware, const StageCounters& stage, c
   const MemoryParameters& memory = hardware.memory;
   if (is_of_bins(stage.stage) && memory.binned && frame.bin.pixels > 0)
     of_core = std::min(of_core, threads_of_bin(stage, frame) * memory.bins_held(frame.bin.bytes, frame.bin.pixels));
-  return hardware.memory.cores * std::max(of_core, 1.0);
+  return std::clamp(hardware.memory.cores * of_core, 1.0, std::max(threads_of_frame(stage), 1.0));
 }
 
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
@@ -282,7 +294,7 @@ std::vector<std::string> unit_names() {
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage, const BinSize& bin, double bins) {
-  return times_of(hardware, implementation, stage, {bin, bins});
+  return times_of(hardware, implementation, stage, {bin, bins, bins});
 }
 
 BinSpread bin_spread(const Hardware& hardware, const FrameWork& work) {
@@ -310,10 +322,8 @@ std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vec
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation, const FrameWork& work) {
-  const auto idle = std::count(work.bin_operations.begin(), work.bin_operations.end(), 0u);
-  const double bins = static_cast<double>(work.bin_operations.size()) - static_cast<double>(idle);
-  const FrameKind frame{work.bin, std::max(bins, 1.0), has_stage(work.stages, StageId::light),
-                        has_rops(implementation, work.stages)};
+  const FrameKind frame{work.bin, count_working(work.bin_operations), count_working(work.bin_invocations),
+                        has_stage(work.stages, StageId::light), has_rops(implementation, work.stages)};
   const double held = hardware.memory.bins_held(work.bin.bytes, work.bin.pixels);
   ModelledTime time;
   std::map<std::string, double> all, before;

@@ -51,7 +51,6 @@ TimedResult render_timed(const RunPlan& plan, const Rendering& run, Progress& pr
   return {std::move(result), std::chrono::duration<double, std::milli>(end - start).count()};
 }
 
-// What a report has of a result, without pictures and counters of pixels.
 FrameContent content_of(const Trace& trace, std::size_t index) {
   const Frame& frame = trace.frames[index];
   FrameContent content{.index = index,

@@ -66,7 +66,21 @@ std::string memory_text(const Json& memory) {
          memory.at("sector_bytes").dump() + " bytes, compression " +
          (memory.at("compression").get<bool>() ? "on" : "off") + ", bins of at most " + side + " × " + side +
          " pixels, " + memory.at("cores").dump() + " cores, each with " + size("on_chip_bytes") +
-         " on chip for the pixels of " + memory.at("bins_per_core").dump() + " bins";
+         " on chip for the pixels of " + memory.at("bins_per_core").dump() +
+         " bins of 32 × 32 pixels, or of more smaller ones" +
+         (memory.value("binned", true) ? "" : "; nothing is binned");
+}
+
+// What its invocations of fragment shaders cost beside what the trace's materials cost; empty if nothing.
+std::string shading_text(const Json& hardware) {
+  const Json* const shading = hardware.find("shading");
+  if (!shading) return "";
+  const auto cost = [&](const char* of) {
+    return shading->at(of).at("operations").dump() + " operations and " + shading->at(of).at("fetches").dump() +
+           " fetches";
+  };
+  return cost("material") + " per invocation for materials, " + cost("light") +
+         " for lights, beside what the trace's own take";
 }
 
 // The option that names the hardware, or nothing for the default one.
@@ -126,7 +140,10 @@ Json report_conditions(const ReportFile& report) {
   }
   add("trace", report.json.at("trace").get<std::string>());
   add("command", command_of(report));
-  if (report.json.contains("hardware")) add("hardware", hardware_text(report.json));
+  if (const Json* const hardware = report.json.find("hardware")) {
+    add("hardware", hardware_text(report.json));
+    add("shading", shading_text(*hardware));
+  }
   if (const Json* const memory = report.json.find("memory_system")) add("memory system", memory_text(*memory));
   add("program", "beampipe " + report.json.value("version", std::string()) + ", " +
                      counted(report.json.value("threads", std::uint64_t{1}), "thread") + ", " +

@@ -29,10 +29,10 @@ PlotSeries& series_named(ScatterPlot& plot, const std::vector<ReportFile>& repor
   return plot.series.back();
 }
 
-// All of msaa are one series, and each other technique is one of its own.
+// All of msaa without options are one series, and each other technique is one of its own.
 void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& spec, PlotPoint point) {
   if (point.x > 0 && point.y > 0) {
-    const std::string name = is_msaa(spec) ? kMsaaName : spec;
+    const std::string name = is_msaa(spec) && spec.find(',') == spec.npos ? kMsaaName : spec;
     series_named(plot, reports, name, spec).points.push_back(std::move(point));
   } else {
     plot.notes.push_back(spec + " is not drawn: " + (point.x > 0 ? plot.y_label : plot.x_label) +

@@ -121,6 +121,7 @@ TechniqueSummary read_summary(const Json& result) {
   summary.spec = result.at("technique").get<std::string>();
   summary.bytes_per_pixel = result.at("peak_bytes_per_pixel").get<double>();
   summary.on_chip_bytes_per_pixel = result.value("on_chip_bytes_per_pixel", 0.0);
+  summary.pixels_on_chip = result.value("pixels_on_chip", false);
   summary.all_bytes_per_pixel = summary.bytes_per_pixel + summary.on_chip_bytes_per_pixel;
   std::vector<double> medians;
   const std::vector<Json>& frames = result.at("frames").elements();

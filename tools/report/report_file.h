@@ -42,6 +42,7 @@ struct TechniqueSummary {
   double on_chip_bytes_per_pixel = 0;  // all buffers that a bin has on chip, at their peaks
   double all_bytes_per_pixel = 0;      // both
   std::uint64_t bin_pixels = 0;        // of the largest bin
+  bool pixels_on_chip = false;         // while a bin is drawn
   double wall_ms = 0;                  // per frame: the median of the frames' medians
   // By implementation of the modelled hardware. Empty if nothing was modelled.
   std::map<std::string, ModelledMs> modelled_ms;

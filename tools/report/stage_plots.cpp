@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "stages/cost/stage.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/results.h"
 #include "tools/report/colors.h"
@@ -35,6 +36,10 @@ BarPlot bars_of_stages(const ReportFile& report, BarPlot plot,
     part_named(plot, name, stage_color(name)).values[static_cast<std::size_t>(bar - plot.categories.begin())] +=
         *amount;
   }
+  std::ranges::stable_sort(plot.parts, {}, [](const BarPlot::Part& part) {
+    const std::optional<Stage> stage = find_stage(part.name);
+    return stage ? stage->number() : kStageNumbers;  // in the order of the pipeline
+  });
   return plot;
 }
 

@@ -495,10 +495,12 @@ std::vector<Table> report_tables(const ReportFile& report) {
   tables.push_back(make_table("framebuffer", "Framebuffers", "", kSurfaceColumns, members(results, "framebuffer")));
   const std::vector<Json> claims = claim_records(report.json);
   if (!claims.empty())
-    tables.push_back(
-        make_table("claims", "Published figures about this trace",
-                   "The command beampipe claims lists all published figures, also those about other scenes.",
-                   kClaimColumns, claims));
+    tables.push_back(make_table(
+        "claims", "Published figures about this trace",
+        "The command beampipe claims lists all published figures, also those about other scenes. Our modelled "
+        "times are those of " +
+            hardware_label(report) + ".",
+        kClaimColumns, claims));
   return tables;
 }
 

@@ -104,6 +104,7 @@ TEST(ModelledTime, FixedFunctionsFollowTheirWork) {
   const Implementation& fixed = titan.implementations.at(1);
   const auto of = [&](StageId id, const char* unit, const auto& set) {
     StageCounters counters{id};
+    counters.items_in = counters.lanes_issued = 1000000;
     set(counters);
     return clocks(titan, unit_times(titan, fixed, counters).at(unit));
   };
@@ -262,7 +263,8 @@ TEST(ModelledTime, ThreadsAreFragmentsOrPixels) {
   EXPECT_NEAR(latency(StageId::compose, 640, 0), 640, 1e-9) << "a fragment in each fourth pixel";
   EXPECT_NEAR(latency(StageId::beam_fragment, 2560, 0), 160, 1e-9);
   EXPECT_NEAR(latency(StageId::shade, 1280, 2560), 160, 1e-9) << "every second is a helper";
-  EXPECT_NEAR(latency(StageId::beam_fragment, 1, 0), 40 * 2048, 1e-9) << "a core has a thread, at least";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 640, 0), 40 * 256, 1e-9) << "640 threads are all that there are";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 0, 0), 40 * 163840, 1e-9) << "at least one";
 }
 
 // Without bins the cores share a frame's triangles evenly, and none waits for a bin.
@@ -270,7 +272,7 @@ TEST(ModelledTime, WithoutBinsNothingIsScheduled) {
   Hardware titan = titan_v();
   titan.memory.binned = false;
   StageCounters compose{StageId::compose};
-  compose.items_in = 1, compose.ops.bit = 1638400;
+  compose.items_in = 1000000, compose.ops.bit = 1638400;
   EXPECT_NEAR(clocks(titan, unit_times(titan, titan.implementations.at(0), compose, {0, 256}).at("latency")), 40, 1e-9);
   const std::vector<std::uint64_t> one_bin = {7};
   EXPECT_EQ(bin_spread(titan, {{}, {}, one_bin}).busiest_core, 1);
@@ -279,6 +281,7 @@ TEST(ModelledTime, WithoutBinsNothingIsScheduled) {
 // 65536 registers of a core are those of 512 threads of 128 registers, a quarter of 2048.
 TEST(ModelledTime, RegistersLimitThreads) {
   StageCounters counters{StageId::shade};
+  counters.lanes_issued = 1000000;
   counters.ops.bit = 1638400;
   const auto latency = [&](double registers) {
     const Hardware titan = with_shading_costs(titan_v(), {0, 0, registers}, {});
@@ -295,6 +298,7 @@ TEST(ModelledTime, RegistersLimitThreads) {
 TEST(ModelledTime, BinsOfACoreOverlapTheirStages) {
   const Hardware titan = titan_v();
   StageCounters compose{StageId::compose}, shade{StageId::shade};
+  compose.items_in = shade.lanes_issued = 1000000;
   compose.ops.bit = 5120 * 40;
   shade.bytes_read = shade.texture_bytes = 5120 * 40;
   const std::vector<StageCounters> stages = {compose, shade};
@@ -309,11 +313,13 @@ TEST(ModelledTime, BinsOfACoreOverlapTheirStages) {
 TEST(ModelledTime, LatencyOfABinIsNotShared) {
   const Hardware titan = titan_v();
   StageCounters compose{StageId::compose};
-  compose.items_in = 64;
-  compose.ops.bit = 80 * 64 * 100;  // 100 operations of each of the 64 threads of a bin, on 80 cores: 400 clocks
+  compose.items_in = 160 * 64;
+  compose.ops.bit = 160 * 64 * 50;  // 50 operations of each of the 64 threads of a bin, two bins to a core: 400 clocks
   const std::vector<StageCounters> stages = {compose};
+  const std::vector<std::uint64_t> bins(160, 1);
   const auto on_cores = [&](double kib) {
-    return clocks(titan, modelled_time(titan, titan.implementations.at(0), {stages, {kib * 1024, 64}}).on_cores_ms);
+    return clocks(
+        titan, modelled_time(titan, titan.implementations.at(0), {stages, {kib * 1024, 64}, bins, bins}).on_cores_ms);
   };
   EXPECT_NEAR(on_cores(96), 400, 1e-9);
   EXPECT_NEAR(on_cores(48), 200, 1e-9) << "two bins wait at the same time";

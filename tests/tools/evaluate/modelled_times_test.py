@@ -14,6 +14,7 @@ import unittest
 
 NO_COSTS = {kind: {"operations": 0, "fetches": 0, "registers": 0} for kind in ("material", "light")}
 OF_CORES = {"shader", "texture", "latency"}
+PICTURE = {"motion", "dilate", "temporal", "resolve"}
 SHADING = {"sample_select", "material_sort", "shade", "light"}
 BY_PIXEL = {"a_buffer", "windows", "compose", "depth_test", "blend", "stencil_test", "accumulate", "motion", "dilate",
             "temporal", "resolve"}
@@ -85,7 +86,7 @@ def threads_of_bin(stage, pixels, bins):
     """Of the mean bin: its items, of which those of a pixel are taken in order by some stages."""
     name = stage["stage"].removeprefix("prepass_")
     items = stage["lanes_issued" if name in SHADING else "items_in"] / bins
-    return min(items, pixels) if name in BY_PIXEL else items
+    return min(items, pixels) if pixels and name in BY_PIXEL else items
 
 
 def on_busiest_core(operations, cores):
@@ -116,7 +117,7 @@ class ModelledTimesTest(unittest.TestCase):
             bin_bytes = sum(buffer["peak_bytes"] for buffer in frame["buffers"] if buffer["name"] == "open_pixels")
             most = memory["bins_per_core"] * max(1024 // frame["bin_pixels"], 1)
             held = max(min(memory["on_chip_bytes"] // max(bin_bytes, 1), most), 1)
-            bins = max(sum(operations > 0 for operations in frame["bin_operations"]), 1)
+            all_bins, shaded_bins = (max(sum(work > 0 for work in frame[key]), 1) for key in ("bin_operations", "bin_invocations"))
             for way, implementation in hardware["implementations"].items():
                 before, of_bins, in_turn, alone = {}, {}, 0, 0
                 units_of = {stage["stage"]: implementation["units"][stage["stage"].removeprefix("prepass_")]
@@ -133,10 +134,12 @@ class ModelledTimesTest(unittest.TestCase):
                     if registers:
                         threads = min(threads, rates["core_registers"] // registers)
                     if not is_geometry:
-                        threads = max(min(threads, held * threads_of_bin(stage, frame["bin_pixels"], bins)), 1)
+                        bins = all_bins if stage["stage"] in PICTURE else shaded_bins
+                        threads = min(threads, held * threads_of_bin(stage, frame["bin_pixels"], bins))
+                    threads = max(min(threads * memory["cores"], threads_of_bin(stage, None, 1)), 1)
                     if {"shader", "shading"} & set(units):
                         units = units + ["latency"]
-                    times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0, memory, threads * memory["cores"])
+                    times = {unit: unit_clocks(unit, stage, rates, bin_bytes > 0, memory, threads)
                              / clocks_per_ms for unit in units + ["l2", "dram"] if unit not in not_there}
                     if "shading" in times:
                         times["shader"] = max(times.pop("shading"), times.get("shader", 0))

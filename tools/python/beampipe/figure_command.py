@@ -49,7 +49,8 @@ def parse(words):
     parser = _Parser(prog="beampipe figure", description="Make a figure for a paper: pictures, crops, maps of errors.",
                      epilog=EXAMPLES, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="+", metavar="DIR", help="what `beampipe compare` wrote; a row for each")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="the figure: .svg, .pdf or .png; or .mp4, a film of all frames (needs the program ffmpeg)")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE",
+                        help="the figure: .svg, .pdf or .png; or .mp4, a film of all frames (needs the program ffmpeg)")
     parser.add_argument("-t", "--technique", nargs="+", action="extend", metavar="SPEC",
                         help="only these techniques, in this order (default: all)")
     parser.add_argument("--crop", type=_crop, action="append", metavar="X,Y,W,H",
@@ -79,8 +80,10 @@ def work(arguments):
     how = {"crops": arguments.crop, "width": arguments.inches}
     shown = scenes(arguments.frame or 0)
     if ending == FILM:
-        count = min(len(report.frames(figures.REFERENCE)) for report in reports)
-        figures.film([shown, *map(scenes, range(1, count))], arguments.output, **how)
+        counts = {len(report.frames(figures.REFERENCE)) for report in reports}
+        if len(counts) > 1:
+            raise Error(f"{arguments.output}: expected folders with as many frames, found {' and '.join(map(str, sorted(counts)))}")
+        figures.film(map(scenes, range(counts.pop())), arguments.output, **how)
     else:
         figures.save(figures.draw(shown, **how), arguments.output)
     if arguments.tex:

@@ -8,12 +8,13 @@
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import pathlib
 import subprocess
 import tempfile
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Iterable, Optional, Sequence, Union
 
 import numpy
 from matplotlib import colormaps, rc_context
@@ -247,7 +248,8 @@ def _cuts(scenes: Sequence[Scene], crops: Optional[Sequence[Crop]]) -> list[list
 
 
 def _scale(scenes: Sequence[Scene]) -> Normalize:
-    errors = numpy.concatenate([each.errors.ravel() for scene in scenes for each in scene.columns if each.errors is not None])
+    errors = numpy.concatenate([each.errors.ravel() for scene in scenes for each in scene.columns
+                                if each.errors is not None])
     return Normalize(0, float(numpy.percentile(errors, MAP_SHARE)) or float(errors.max()) or 1.0, clip=True)
 
 
@@ -297,18 +299,25 @@ def save(figure: Figure, file: Union[str, os.PathLike]) -> None:
         write_atomically(file, drawn.read())
 
 
-def film(frames: Sequence[Sequence[Scene]], file: Union[str, os.PathLike], *, crops: Optional[Sequence[Crop]] = None,
+def film(frames: Iterable[Sequence[Scene]], file: Union[str, os.PathLike], *, crops: Optional[Sequence[Crop]] = None,
          width: float = WIDTH) -> None:
-    """Writes .mp4 with the program ffmpeg: a figure for each frame. Crops and the scale of maps stay the same: those of
-    draw() for the first frame, and for all of them together."""
-    cuts, scale = _cuts(frames[0], crops), _scale([scene for scenes in frames for scene in scenes])
+    """Writes .mp4 with the program ffmpeg: a figure for each frame. Crops and the scale of maps are those of the first
+    frame."""
+    frames = iter(frames)
+    first = next(frames)
+    cuts, scale = _cuts(first, crops), _scale(first)
     with tempfile.TemporaryDirectory() as folder:
         written = pathlib.Path(folder) / "film.mp4"
         command = ["ffmpeg", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(FRAMES_PER_SECOND), "-i", "-",
                    "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", str(written)]
         try:
             with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-                _, said = process.communicate(b"".join(_png(_draw(scenes, cuts, scale, width)) for scenes in frames))
+                try:
+                    for scenes in itertools.chain([first], frames):
+                        process.stdin.write(_png(_draw(scenes, cuts, scale, width)))
+                except BrokenPipeError:
+                    pass  # it says why
+                _, said = process.communicate()
         except FileNotFoundError:
             raise Error("ffmpeg is missing: please install the Debian package ffmpeg") from None
         if process.returncode or not written.exists():

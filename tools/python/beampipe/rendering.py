@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import dataclass, field
 from typing import Any, Callable, Iterable, Optional, Union
 
@@ -107,8 +108,8 @@ def name_of(technique: AnyTechnique) -> str:
 
 
 def _render_native(technique: _native.Technique, trace: Trace, frame: int, *, threads: int, memory_model: bool,
-                   hardware: str, history: Optional[_native.History] = None) -> Rendering:
-    found = _native.render(trace, technique, frame, threads, memory_model, hardware, history)
+                   hardware: Union[str, os.PathLike], history: Optional[_native.History] = None) -> Rendering:
+    found = _native.render(trace, technique, frame, threads, memory_model, os.fspath(hardware), history)
     rgba = found.pop("rgba")
     return Rendering(technique.spec, frame, numpy.ascontiguousarray(rgba[..., :3]), rgba[..., 3].copy(), **found)
 
@@ -131,7 +132,7 @@ def _frames(frames: Union[int, Iterable[int], None], trace: Trace) -> list[int]:
 
 
 def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, threads: int = 0,
-                  memory_model: bool = True, hardware: str = "titan_v") -> list[Rendering]:
+                  memory_model: bool = True, hardware: Union[str, os.PathLike] = "titan_v") -> list[Rendering]:
     """The frames in this order; techniques with a history keep it from one to the next."""
     how = {"threads": threads, "memory_model": memory_model, "hardware": hardware}
     if isinstance(technique, Pattern):
@@ -143,7 +144,7 @@ def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, t
 
 
 def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable[int], None] = 0, width: int = 0,
-           height: int = 0, threads: int = 0, memory_model: bool = True, hardware: str = "titan_v",
+           height: int = 0, threads: int = 0, memory_model: bool = True, hardware: Union[str, os.PathLike] = "titan_v",
            **options: Any) -> Union[Rendering, list[Rendering]]:
     """Renders a frame, or, as a list, several (None: all), with which techniques over time keep their history.
 

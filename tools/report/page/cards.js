@@ -8,7 +8,8 @@ function timeLines(time) {
   const range = (key) => (time[`${key}_interval`] ?? []).map(shortText).join(" to ");
   const line = (title, key) => `${title}: ${shortText(time[key])} ms${range(key) && ` (${range(key)})`}`;
   return [`bottleneck: ${time.busiest}`, ...(range("at_once") ? [`range: ${range("at_once")} ms`] : []),
-    line("on cores", "on_cores"), line("in turn", "in_turn")];
+    line("on cores", "on_cores"), line("in turn", "in_turn"),
+    ...(time.ratio_interval ? [`in turn: ${time.ratio.toPrecision(3)}× (${time.ratio_interval.map((end) => end.toPrecision(3)).join(" to ")})`] : [])];
 }
 
 // What a card lists: a name, the number, its text, and more lines that explain it.
@@ -16,7 +17,8 @@ function cardRows(card, implementation) {
   const time = card.modelled_ms?.[implementation], bound = { exact: "", "at least": "≥ ", "at most": "≤ " };
   const rows = [
     ["DRAM", card.dram_bytes, bytesText, []],
-    ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin`]],
+    ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin of ${numberText(card.bin_pixels)} pixels`,
+      `pixels are ${card.pixels_on_chip ? "on chip" : "in memory"}`]],
     ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, ["framebuffer, A-buffer"]],
     ["time", time?.at_once, (value) => `${shortText(value)} ms`,
       time ? timeLines(time) : []],
