@@ -16,6 +16,14 @@ StageCounters stage(StageId id) {
   return counters;
 }
 
+// Whose threads wait for nothing, so that a few fill it.
+Hardware titan_without_latency() {
+  Hardware titan = titan_v();
+  for (const char* rate : {"operation_clocks", "fetch_clocks", "l2_clocks", "dram_clocks"})
+    titan.rates.at(rate) = kLeastRate;
+  return titan;
+}
+
 double clocks(const Hardware& hardware, double ms) { return ms * hardware.clock_mhz * 1e3; }
 
 // Each unit takes its work divided by its rate: 6000 triangles at 6 per clock, 9600 pixels at 96 per clock, two clocks
@@ -34,7 +42,7 @@ TEST(ModelledTime, TimeIsWorkOverRate) {
 // 3840 bytes of colours at 384 per clock, where ROPs follow. Composition in shaders keeps its colours, that in ROPs
 // does not.
 TEST(ModelledTime, ColoursGoToRops) {
-  const Hardware titan = titan_v();
+  const Hardware titan = titan_without_latency();
   StageCounters shade{StageId::shade};
   shade.bytes_written = 3840;
   const auto of = [&](StageId last, std::size_t implementation) {
@@ -63,7 +71,7 @@ TEST(ModelledTime, SetupAndRasterTakeTurnsOnlyInTurn) {
 }
 
 TEST(ModelledTime, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
-  const Hardware titan = titan_v();
+  const Hardware titan = titan_without_latency();
   const std::vector<StageCounters> stages = {stage(StageId::sample_raster), stage(StageId::compose),
                                              stage(StageId::compose)};
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {stages});
@@ -78,7 +86,7 @@ TEST(ModelledTime, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
 }
 
 TEST(ModelledTime, ShadersShareTheirUnitBetweenStages) {
-  const Hardware titan = titan_v();
+  const Hardware titan = titan_without_latency();
   StageCounters busy{StageId::compose};
   busy.ops.bit = 5120 * 100;
   const std::vector<StageCounters> stages = {busy, busy};
@@ -88,7 +96,7 @@ TEST(ModelledTime, ShadersShareTheirUnitBetweenStages) {
 }
 
 TEST(ModelledTime, LanesThatAStageNamesTwiceWorkOnce) {
-  Hardware titan = titan_v();
+  Hardware titan = titan_without_latency();
   StageCounters busy{StageId::shade};
   busy.ops.bit = 5120 * 100;
   const std::vector<StageCounters> stages = {busy};
@@ -104,7 +112,6 @@ TEST(ModelledTime, FixedFunctionsFollowTheirWork) {
   const Implementation& fixed = titan.implementations.at(1);
   const auto of = [&](StageId id, const char* unit, const auto& set) {
     StageCounters counters{id};
-    counters.items_in = counters.lanes_issued = 1000000;
     set(counters);
     return clocks(titan, unit_times(titan, fixed, counters).at(unit));
   };
@@ -212,6 +219,7 @@ TEST(ModelledTime, ThreadsWaitForOperationsLoadsAndSectors) {
   const Hardware titan = titan_v();
   const auto latency = [&](StageId id, const auto& set) {
     StageCounters counters{id};
+    counters.items_in = counters.lanes_issued = 1000000;
     set(counters);
     return clocks(titan, unit_times(titan, titan.implementations.at(0), counters).at("latency"));
   };
@@ -247,24 +255,25 @@ TEST(ModelledTime, FewerBinsHideLessLatency) {
   EXPECT_NEAR(latency(49, 256), 40, 1e-9) << "not of bins";
 }
 
-// 12800 fragments in 10 bins of 16 x 16 pixels, of which a core holds two: of a bin 1280 are shaded, so that the 2048
+// A thousand bins of 16 x 16 pixels, of which a core holds two. Of a bin 1280 fragments are shaded, so that the 2048
 // threads of a core are all in flight, but 256 are composed, one of each pixel. Helper lanes are threads, too.
 TEST(ModelledTime, ThreadsAreFragmentsOrPixels) {
   const Hardware titan = titan_v();
-  const auto latency = [&](StageId id, std::uint64_t items, std::uint64_t lanes) {
+  const auto latency = [&](StageId id, std::uint64_t items, std::uint64_t lanes, std::uint64_t bins) {
     StageCounters counters{id};
-    counters.items_in = items, counters.lanes_issued = lanes;
+    counters.items_in = items * bins, counters.lanes_issued = lanes * bins;
     counters.ops.bit = 1638400;
-    const auto times = unit_times(titan, titan.implementations.at(0), counters, {48 * 1024, 256}, 10);
+    const auto times =
+        unit_times(titan, titan.implementations.at(0), counters, {48 * 1024, 256}, static_cast<double>(bins));
     return clocks(titan, times.at("latency"));
   };
-  EXPECT_NEAR(latency(StageId::beam_fragment, 12800, 0), 40, 1e-9);
-  EXPECT_NEAR(latency(StageId::compose, 12800, 0), 160, 1e-9);
-  EXPECT_NEAR(latency(StageId::compose, 640, 0), 640, 1e-9) << "a fragment in each fourth pixel";
-  EXPECT_NEAR(latency(StageId::beam_fragment, 2560, 0), 160, 1e-9);
-  EXPECT_NEAR(latency(StageId::shade, 1280, 2560), 160, 1e-9) << "every second is a helper";
-  EXPECT_NEAR(latency(StageId::beam_fragment, 640, 0), 40 * 256, 1e-9) << "640 threads are all that there are";
-  EXPECT_NEAR(latency(StageId::beam_fragment, 0, 0), 40 * 163840, 1e-9) << "at least one";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 1280, 0, 1000), 40, 1e-9);
+  EXPECT_NEAR(latency(StageId::compose, 1280, 0, 1000), 160, 1e-9);
+  EXPECT_NEAR(latency(StageId::compose, 64, 0, 1000), 640, 1e-9) << "a fragment in each fourth pixel";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 256, 0, 1000), 160, 1e-9);
+  EXPECT_NEAR(latency(StageId::shade, 128, 256, 1000), 160, 1e-9) << "every second is a helper";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 640, 0, 1), 40 * 256, 1e-9) << "640 threads are all that there are";
+  EXPECT_NEAR(latency(StageId::beam_fragment, 0, 0, 1), 40 * 163840, 1e-9) << "at least one";
 }
 
 // Without bins the cores share a frame's triangles evenly, and none waits for a bin.
@@ -296,9 +305,8 @@ TEST(ModelledTime, RegistersLimitThreads) {
 // Two stages of 40 clocks each, one of lanes and one of textures. A core that holds one bin does one after the other;
 // with two bins they overlap.
 TEST(ModelledTime, BinsOfACoreOverlapTheirStages) {
-  const Hardware titan = titan_v();
+  const Hardware titan = titan_without_latency();
   StageCounters compose{StageId::compose}, shade{StageId::shade};
-  compose.items_in = shade.lanes_issued = 1000000;
   compose.ops.bit = 5120 * 40;
   shade.bytes_read = shade.texture_bytes = 5120 * 40;
   const std::vector<StageCounters> stages = {compose, shade};
@@ -357,7 +365,7 @@ TEST(ModelledTime, SpreadOfBins) {
 // Of 80 cores one has twice the work of the mean. Geometry comes first: 1000 clocks of triangles. Then bins take 2 x 20
 // clocks of shaders, or as long as DRAM takes for all of them.
 TEST(ModelledTime, CoresWaitForTheirBusiestButShareDram) {
-  const Hardware titan = titan_v();
+  const Hardware titan = titan_without_latency();
   StageCounters setup{StageId::vertex_setup}, compose{StageId::compose};
   setup.items_in = 6000;
   compose.ops.bit = 102400;
@@ -376,7 +384,7 @@ TEST(ModelledTime, CoresWaitForTheirBusiestButShareDram) {
 // units.
 TEST(ModelledTime, ShadingCostsAreAddedToInvocations) {
   const auto time_of = [](const ShadingCost& material, const ShadingCost& light, const std::vector<StageId>& stages) {
-    const Hardware titan = with_shading_costs(titan_v(), material, light);
+    const Hardware titan = with_shading_costs(titan_without_latency(), material, light);
     std::vector<StageCounters> all;
     for (const StageId id : stages) all.emplace_back(StageCounters{id}).lanes_issued = 512;
     return clocks(titan, modelled_time(titan, titan.implementations.at(1), {all}).in_turn_ms);
