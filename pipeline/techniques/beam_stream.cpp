@@ -68,7 +68,7 @@ TechniqueKind beam_stream_kind() {
   return {.name = "beam",
           .variant = {"order", "stream"},
           .description =
-              "the surfaces of beam with fragments in primitive order: no A-buffer, no bins, no sort; 128 positions, "
+              "the surfaces of beam with fragments in primitive order: no A-buffer, no sorted bins; 128 positions, "
               "and the pool lies in memory; of more than twelve surfaces of a pixel two are merged, and of fewer once "
               "the pool is full",
           .source = "ours",
