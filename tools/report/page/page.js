@@ -16,8 +16,9 @@ function startTheme() {
 
 function startFigures(figures) {
   for (const place of document.querySelectorAll("[data-section]")) {
-    const here = figures.filter((figure) => figure.section === place.dataset.section);
-    place.append(...here.map(makeFigure));
+    const here = figures.filter((figure) => figure.section === place.dataset.section).map(makeFigure);
+    place.append(...here.map(({ element }) => element));
+    for (const { draw } of here) draw();
     if (here.length === 0) place.remove();
   }
 }

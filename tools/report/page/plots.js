@@ -133,6 +133,7 @@ function drawBars(svg, plot, width) {
   });
 }
 
+// `draw` draws it, once it has a place on the page; after that it is drawn again whenever its width changes.
 function makeFigure(figure) {
   const svg = d3.create("svg").attr("role", "group");
   const key = make("div", { class: "key" }), note = make("p", { class: "note" });
@@ -141,9 +142,11 @@ function makeFigure(figure) {
   const caption = make("figcaption", {}, make("h3", {}, figure.title), make("p", {}, figure.caption));
   if (figure.choices.length > 1) caption.append(select);
   const element = make("figure", {}, caption, svg.node(), key, note);
+  let drawnWidth = 0;
   const draw = () => {
     const { plot } = figure.choices[Number(select.value)], width = element.clientWidth;
     if (width === 0) return;
+    drawnWidth = width;
     svg.selectAll("*").remove();
     svg.attr("aria-label", plot.title).attr("data-plot", plot.name);
     (plot.kind === "bars" ? drawBars : drawScatter)(svg, plot, width);
@@ -157,10 +160,8 @@ function makeFigure(figure) {
     select.value = at;
     draw();
   });
-  let drawnWidth = 0;
   new ResizeObserver(() => requestAnimationFrame(() => {
     if (element.clientWidth !== drawnWidth) draw();
-    drawnWidth = element.clientWidth;
   })).observe(element);
-  return element;
+  return { element, draw };
 }
