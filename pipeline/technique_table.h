@@ -27,6 +27,9 @@ struct TechniqueKind {
   // digests and docs.
   std::vector<std::string> examples;
   std::vector<std::string> stressed = {};  // specs that `beampipe stress` compares with exact arithmetic
+  // Identifies code outside the program that makes the pictures, so that results of other code are not taken for its
+  // own; empty: there is none.
+  std::string code = {};
   // Gives the options, bound to variables that have their defaults, to `read`, which may set them. Then makes the
   // technique from these variables, without its spec.
   std::function<Technique(const std::function<void(const SpecOptions&)>& read)> make;

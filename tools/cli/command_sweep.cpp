@@ -50,7 +50,7 @@ struct SweepArguments {
   std::string plan, output, part, reference_cache;
   int jobs = 0, threads = 0;
   std::uint32_t tasks = 0;
-  std::vector<std::string> plots, sbatch;
+  std::vector<std::string> start, plots, sbatch;
   bool slurm = false, dry_run = false, merge = false, allow_outside = false;
 };
 
@@ -157,8 +157,9 @@ void submit(Sweep& sweep, const std::vector<PlotColumns>& plots) {
   request.all_parts = std::min(sweep.jobs.size(), arguments.tasks > 0 ? arguments.tasks : kMostTasks);
   request.parts = unfinished_parts(sweep, request.all_parts);
   if (request.parts.empty()) return merge(sweep, plots);
-  request.command = {fs::read_symlink("/proc/self/exe").string(), "sweep", fs::absolute(arguments.plan).string(), "-o",
-                     sweep.output.path().string()};
+  request.command = arguments.start;
+  request.command.insert(request.command.end(),
+                         {"sweep", fs::absolute(arguments.plan).string(), "-o", sweep.output.path().string()});
   if (arguments.allow_outside) request.command.push_back("--allow-outside");
   if (const std::string& named = arguments.reference_cache; !named.empty()) {
     const fs::path pictures = picture_cache_folder(named);
@@ -215,8 +216,9 @@ void sweep(const SweepArguments& arguments, InterruptGate& gate) {
 
 }  // namespace
 
-void add_sweep_command(CommandLine& line, InterruptGate& gate) {
+void add_sweep_command(CommandLine& line, const std::vector<std::string>& start, InterruptGate& gate) {
   const auto arguments = std::make_shared<SweepArguments>();
+  arguments->start = start.empty() ? std::vector{fs::read_symlink("/proc/self/exe").string()} : start;
   Command command =
       line.add_command("sweep", "Vary techniques, caches and hardware, and make one table of the results");
   command.add("PLAN", arguments->plan, "what is varied: a JSON file, see below").required();

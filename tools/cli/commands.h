@@ -2,6 +2,9 @@
 // line.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "tools/cli/command_line.h"
 #include "tools/files/interrupt.h"
 
@@ -16,7 +19,8 @@ void add_claims_command(CommandLine& line);
 void add_counters_command(CommandLine& line);
 void add_model_command(CommandLine& line);
 void add_correlate_command(CommandLine& line, InterruptGate& gate);
-void add_sweep_command(CommandLine& line, InterruptGate& gate);
+// `start`: the words that start the program on another machine; empty: its executable does.
+void add_sweep_command(CommandLine& line, const std::vector<std::string>& start, InterruptGate& gate);
 void add_stress_command(CommandLine& line, InterruptGate& gate);
 void add_inspect_command(CommandLine& line, InterruptGate& gate);
 void add_diff_command(CommandLine& line, InterruptGate& gate);

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "pipeline/technique.h"
 #include "tools/cli/commands.h"
@@ -51,7 +52,7 @@ void keep_freed_memory() {
   mallopt(M_TRIM_THRESHOLD, kLargest);
 }
 
-int run(int argc, char** argv, InterruptGate& gate) {
+int run(int argc, char** argv, const std::vector<std::string>& start, InterruptGate& gate) {
   keep_freed_memory();
   CommandLine line("beampipe", program_version(), kDescription, kExamples);
   add_run_command(line, gate);
@@ -63,7 +64,7 @@ int run(int argc, char** argv, InterruptGate& gate) {
   add_counters_command(line);
   add_model_command(line);
   add_correlate_command(line, gate);
-  add_sweep_command(line, gate);
+  add_sweep_command(line, start, gate);
   add_stress_command(line, gate);
   add_inspect_command(line, gate);
   add_diff_command(line, gate);
@@ -84,11 +85,11 @@ int run(int argc, char** argv, InterruptGate& gate) {
 
 }  // namespace
 
-int run_program(int argc, char** argv) {
+int run_program(int argc, char** argv, const std::vector<std::string>& start) {
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit must be a write error, not the end of the program
   InterruptGate gate;
   try {
-    return run(argc, argv, gate);
+    return run(argc, argv, start, gate);
   } catch (const UsageError& error) {
     return report_error(error.what(), kUsageError);
   } catch (const SpecError& error) {

@@ -36,7 +36,7 @@ fs::path picture_cache_folder(const std::string& named) {
 
 PictureCache::PictureCache(fs::path folder, const Trace& trace, std::uint64_t most_bytes)
     : folder_(std::move(folder)),
-      program_(digest_of_file("/proc/self/exe")),
+      program_(program_digest()),
       trace_(digest_of(trace)),
       most_bytes_(most_bytes) {}
 

@@ -1,8 +1,14 @@
 #include "tools/evaluate/results.h"
 
+#include <dlfcn.h>
+#include <link.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
+
+#include "pipeline/technique_table.h"
+#include "tools/files/digest.h"
 
 namespace beampipe {
 
@@ -25,6 +31,18 @@ PixelCounterStats measure_counter(const std::vector<float>& values) {
 }
 
 std::string program_version() { return BEAMPIPE_VERSION; }
+
+std::string program_digest() {
+  Dl_info ignored;
+  link_map* loaded = nullptr;
+  const bool is_module = dladdr1(reinterpret_cast<const void*>(&program_digest), &ignored,
+                                 reinterpret_cast<void**>(&loaded), RTLD_DL_LINKMAP) &&
+                         loaded->l_name[0] != '\0';  // the executable's name is empty
+  std::string digest = digest_of_file(is_module ? loaded->l_name : "/proc/self/exe");
+  for (const TechniqueKind& kind : technique_kinds())
+    if (!kind.code.empty()) digest = digest_of(digest + kind.name + " " + kind.code);
+  return digest;
+}
 
 double TechniqueReport::peak_bytes_per_pixel() const {
   double most = 0;

@@ -75,6 +75,10 @@ struct Report {
 // Such as "0.1.0".
 std::string program_version();
 
+// Tells programs apart: a digest of the file that this code was loaded from, an executable or a module of Python, and
+// of the code of techniques that are not in it (TechniqueKind::code).
+std::string program_digest();
+
 // The report of a technique of which no frame has been rendered yet. `memory`: the system that it runs on.
 // `frames_in_memory`: as for FrameReports.
 TechniqueReport new_technique_report(const Technique& technique, const MemoryParameters& memory,

@@ -77,7 +77,7 @@ Form<Maker> maker_form() {
       .written(
           "version", [](const Maker&) { return program_version(); }, text, "Of the program.")
       .written(
-          "program", [](const Maker&) { return digest_of_file("/proc/self/exe"); }, digest,
+          "program", [](const Maker&) { return program_digest(); }, digest,
           "Digest of the program's file.")
       .written(
           "trace", [](const Maker& maker) { return digest_of(maker.plan.trace); }, digest,

@@ -85,9 +85,10 @@ std::vector<Figure> report_figures(const ReportFile& report) {
                   "memory, stages far to the right by arithmetic.",
                   {}};
   for (const TechniqueSummary& summary : report.techniques) {
-    roofline.choices.emplace_back(summary.spec, roofline_plot(report, summary.spec));
+    if (ScatterPlot plot = roofline_plot(report, summary.spec); !plot.series.empty())
+      roofline.choices.emplace_back(summary.spec, std::move(plot));
   }
-  figures.push_back(std::move(roofline));
+  if (!roofline.choices.empty()) figures.push_back(std::move(roofline));
   if (auto causes = causes_plot(report))
     figures.push_back({"causes",
                        "Split of the error",

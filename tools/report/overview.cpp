@@ -84,7 +84,7 @@ std::vector<OverviewRun> runs_of(const std::vector<ReportFile>& reports) {
     }
     OverviewRun& run = runs.emplace_back(OverviewRun{&report, number, labels[number], report.scene, {}, Json::array()});
     run.techniques = read_from_report(report.folder, [&] { return report_tables(report).front(); });
-    if (!report.techniques.front().modelled_ms.empty()) run.times = times_json(finished_run(report));
+    if (!beampipe::implementations_of(report).empty()) run.times = times_json(finished_run(report));
   }
   std::ranges::stable_sort(runs, {}, &OverviewRun::hardware);
   const auto has_twin = [&](const OverviewRun& run) {

@@ -148,14 +148,14 @@ TechniqueSummary read_summary(const Json& result) {
 }
 
 std::vector<std::string> implementations_of(const ReportFile& report) {
+  std::set<std::string> modelled;
+  for (const TechniqueSummary& summary : report.techniques)
+    for (const auto& [name, ms] : summary.modelled_ms) modelled.insert(name);
   std::vector<std::string> names;
-  const auto& modelled = report.techniques.front().modelled_ms;
-  const auto add = [&](const std::string& name) {
-    if (modelled.contains(name) && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
   if (const Json* const hardware = report.json.find("hardware"))
-    for (const auto& [name, units] : hardware->at("implementations").members()) add(name);
-  for (const auto& [name, ms] : modelled) add(name);
+    for (const auto& [name, units] : hardware->at("implementations").members())
+      if (modelled.erase(name) > 0) names.push_back(name);
+  names.insert(names.end(), modelled.begin(), modelled.end());
   return names;
 }
 

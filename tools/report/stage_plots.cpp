@@ -23,11 +23,14 @@ BarPlot::Part& part_named(BarPlot& plot, const std::string& name, const std::str
   return plot.parts.back();
 }
 
-// A bar for each technique, with a part for each stage for which `value` has one.
+// A bar for each technique that has stages, with a part for each stage for which `value` has one.
 BarPlot bars_of_stages(const ReportFile& report, BarPlot plot,
                        const std::function<std::optional<double>(const Json& stage)>& value) {
-  for (const TechniqueSummary& summary : report.techniques) plot.categories.push_back(summary.spec);
-  for (const Json& stage : stage_records(report)) {
+  const std::vector<Json> stages = stage_records(report);
+  for (const TechniqueSummary& summary : report.techniques)
+    if (std::ranges::any_of(stages, [&](const Json& stage) { return stage.at("technique") == summary.spec; }))
+      plot.categories.push_back(summary.spec);
+  for (const Json& stage : stages) {
     const auto bar =
         std::find(plot.categories.begin(), plot.categories.end(), stage.at("technique").get<std::string>());
     const std::optional<double> amount = value(stage);
@@ -55,7 +58,7 @@ struct Roof {
 
 // Nothing if no hardware was modelled.
 std::optional<Roof> roof_of(const ReportFile& report) {
-  if (!report.json.contains("hardware") || report.techniques.front().modelled_ms.empty()) return std::nullopt;
+  if (!report.json.contains("hardware") || implementations_of(report).empty()) return std::nullopt;
   const Json& hardware = report.json.at("hardware");
   const Json& rates = hardware.at("rates");
   const double cores = report.json.at("memory_system").at("cores").get<double>();
@@ -94,7 +97,8 @@ BarPlot time_plot(const ReportFile& report, const std::string& implementation) {
                                 });
   plot.mark_name = "all stages at once";
   for (const TechniqueSummary& summary : report.techniques)
-    plot.marks.push_back(summary.modelled_ms.at(implementation).at_once);
+    if (const auto ms = summary.modelled_ms.find(implementation); ms != summary.modelled_ms.end())
+      plot.marks.push_back(ms->second.at_once);
   return plot;
 }
 

@@ -182,12 +182,12 @@ std::vector<Source> stage_columns(const ReportFile& report) {
        "/ops_per_byte"});
   columns.push_back(
       {{"lane_use", "lane use", "part, 0..1", "Lanes with work, divided by lanes issued.", kItems}, "/lane_use"});
-  for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
+  for (const std::string& implementation : implementations_of(report))
     columns.push_back(
         {{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
           "Time that the modelled hardware takes for this stage, which is that of its busiest unit.", kTime},
          "/modelled_ms/" + implementation});
-  for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
+  for (const std::string& implementation : implementations_of(report))
     columns.push_back({{"busiest_unit_" + implementation, "busiest, " + implementation, "",
                         "The unit that takes so long, in the last frame.", kTime},
                        "/busiest_unit/" + implementation});
@@ -289,7 +289,7 @@ std::vector<Source> with_modelled(std::vector<Source> sources, const ReportFile&
                                   const std::string& energy_unit) {
   auto place =
       std::find_if(sources.begin(), sources.end(), [](const Source& s) { return s.column.key == "dram_bytes"; });
-  for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
+  for (const std::string& implementation : implementations_of(report)) {
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
     const std::string title = implementation + ", ";
     for (const TimeKind& kind : kTimes)

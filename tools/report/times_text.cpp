@@ -5,7 +5,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/mean_time.h"
 #include "tools/evaluate/sensitivity.h"
 #include "tools/files/format.h"
@@ -49,6 +48,13 @@ struct Row {
   std::optional<Quotient> quotient = {};
 };
 
+// References and functions of a user's own model no memory, and a time without it would mean nothing.
+bool has_times(const TechniqueReport& result) {
+  if (result.frames.empty()) return false;
+  const FrameReport& first = result.frames.front();
+  return std::ranges::any_of(first.stages, [](const StageCounters& stage) { return stage.sector_bytes > 0; });
+}
+
 BinSpread mean_spread(const Hardware& hardware, const TechniqueReport& result) {
   BinSpread mean{0, 0, 0};
   const auto frames = static_cast<double>(result.frames.size());
@@ -65,8 +71,8 @@ class Rows {
   Rows(const Report& report, const TimesOptions& options)
       : report_(report), options_(options), draws_(drawn_hardware(report.hardware)) {
     for (const TechniqueReport& result : report.results)
-      if (result.technique == options.over) over_ = &result;
-    if (!options.over.empty() && (!over_ || over_->frames.empty()))
+      if (result.technique == options.over && has_times(result)) over_ = &result;
+    if (!options.over.empty() && !over_)
       throw std::runtime_error("--over " + options.over + ": expected a technique of the run");
     if (options.sensitivity) ends_ = ends_of_ranges(report.hardware);
     for (std::size_t i = 0; over_ && i < report.hardware.implementations.size(); ++i)
@@ -77,7 +83,7 @@ class Rows {
     std::vector<Row> rows;
     for (const TechniqueReport& result : report_.results)
       for (std::size_t i = 0; i < report_.hardware.implementations.size(); ++i)
-        if (result.technique != kReferenceSpec && !result.frames.empty()) rows.push_back(row_of(result, i));
+        if (has_times(result)) rows.push_back(row_of(result, i));
     return rows;
   }
 

@@ -7,7 +7,7 @@
 
 namespace beampipe {
 
-SweepStore::SweepStore(OutputFolder& output) : output_(output), program_(digest_of_file("/proc/self/exe")) {}
+SweepStore::SweepStore(OutputFolder& output) : output_(output), program_(program_digest()) {}
 
 Json SweepStore::full(const Json& key) const {
   return {{"version", program_version()}, {"program", program_}, {"of", key}};

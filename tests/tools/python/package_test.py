@@ -219,6 +219,163 @@ class Own(unittest.TestCase):
         self.assertAlmostEqual(float(beampipe.render(half_plane(5.5), pattern).alpha[3, 5]), 2 / 3, places=3)
 
 
+def over(fragments):
+    """OVER, near to far"""
+    color, left = numpy.zeros(3), 1.0
+    for each in fragments:
+        color += left * each["area"] * each["color"]
+        left *= 1 - each["area"]
+    return [*color, 1 - left]
+
+
+class Merges(unittest.TestCase):
+    """Rules of the user's that merge fragments."""
+
+    def test_over_is_alpha(self):
+        trace = beampipe.make("fence", triangles=3000, width=40, height=30)
+        found, expected = beampipe.render(trace, beampipe.Merge(over), threads=3), beampipe.render(trace, "alpha")
+        numpy.testing.assert_allclose(found.picture, expected.picture, atol=2e-3)  # alpha stores fp16
+        for stage in ("conservative_raster", "shade"):
+            self.assertEqual(found.stages[stage]["items_out"], expected.stages[stage]["items_out"], stage)
+        self.assertEqual(found.stages["compose"]["items_in"], expected.stages["a_buffer"]["items_in"])
+        self.assertEqual(found.stages["compose"]["ops.total"], 0)
+        self.assertGreater(found.times["shaders"]["in_turn"], 0)
+
+    def test_a_rule_is_given_what_a_fragment_is(self):
+        """Two quads: the left half of each pixel in column 5 in front of all of it, at known depths."""
+        x, near, far = 2 * 5.5 / SIZE - 1, -0.5, 0.5  # of clip space; depth is (z - 1) / 2, -0.75 and -0.25
+        quad = lambda right, z: [[-9, -9, z], [right, -9, z], [right, 9, z], [-9, 9, z]]
+        trace = beampipe.trace_from_arrays(quad(9, far) + quad(x, near), [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+                                           [[1, 0, 0]] * 2 + [[0, 0, 1]] * 2, width=SIZE, height=SIZE)
+        seen = {}
+
+        def rule(fragments):
+            areas = tuple(fragments["area"])
+            seen[areas] = fragments.copy()
+            return [0, areas[0], 0, 1]
+
+        merge = beampipe.Merge(rule, positions=64)
+        found = beampipe.render(trace, merge)
+        numpy.testing.assert_array_equal(found.picture[3, 4:8, 1], [1, 0.5, 1, 1])
+        front, back = seen[0.5, 1.0]
+        self.assertEqual((front["depth"], back["depth"]), (-0.75, -0.25))
+        self.assertEqual((front["plane"].tolist(), front["color"].tolist()), ([-0.75, 0, 0], [0, 0, 1]))
+        self.assertEqual(merge.places.shape, (64, 2))
+        numpy.testing.assert_array_equal(front["mask"], merge.places[:, 0] < 0.5)
+        self.assertTrue(back["mask"].all())
+
+    def test_results_depend_on_no_threads(self):
+        trace = beampipe.make("pickets", triangles=3000, width=80, height=45)
+        one, many = (beampipe.render(trace, beampipe.Merge(over, positions=32), threads=n) for n in (1, 5))
+        self.assertEqual(one.picture.tobytes(), many.picture.tobytes())
+        self.assertEqual(one.stages, many.stages)
+
+    def test_what_a_rule_does_wrong_is_said(self):
+        trace = half_plane(5.5)
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            beampipe.render(trace, beampipe.Merge(lambda fragments: 1 / 0))
+        with self.assertRaisesRegex(beampipe.Error, "rgb: expected 4 finite numbers, R, G, B and A, from the rule"):
+            beampipe.render(trace, beampipe.Merge(lambda fragments: [1, 1, 1], name="rgb"))
+        with self.assertRaisesRegex(beampipe.Error, "positions: expected 32, 64, 128 or 256, found 8"):
+            beampipe.Merge(over, positions=8)
+        with self.assertRaisesRegex(beampipe.Error, "rule: expected a function, found str"):
+            beampipe.Merge("over")
+
+
+OWN_PROGRAM = """
+import sys
+sys.path.insert(0, {packages!r})
+import beampipe
+
+def dim(trace, frame):
+    \"\"\"half of msaa:4.\"\"\"
+    return {factor} * beampipe.render(trace, "msaa:4", frames=frame).picture
+
+def nearest(fragments):
+    area = fragments[0]["area"]
+    return [*area * fragments[0]["color"], area]
+
+def broken(trace, frame):
+    return 1 / 0
+
+if __name__ == "__main__":
+    centre = beampipe.Pattern([[0.5, 0.5]], name="centre")
+    sys.exit(beampipe.program(sys.argv[1:], [dim, beampipe.Merge(nearest), centre, broken]))
+"""
+
+
+class OwnProgram(InFolder):
+    """The program with techniques of the user's."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.run_program("make", "fence", "--triangles", "3000", "--width", "60", "--height", "40", "-o", "fence.json")
+        cls.write(0.5)
+
+    @classmethod
+    def write(cls, factor):
+        (cls.folder / "mine.py").write_text(OWN_PROGRAM.format(packages=PACKAGES, factor=factor))
+
+    def start(self, *arguments):
+        return subprocess.run([sys.executable, "mine.py", *arguments], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+
+    def run_own(self, *arguments):
+        found = self.start(*arguments)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        return found.stdout
+
+    def test_commands_know_them(self):
+        self.assertRegex(self.run_own("run", "--help"), r"(?s)dim\s+half of msaa:4 \(mine.py\)")
+        compare = ("compare", "fence.json", "--ladder", "1,4", "-t", "dim", "nearest", "centre", "msaa:1", "-o", "out")
+        self.run_own(*compare)
+        report = beampipe.Report(self.folder / "out")
+        self.assertEqual(report["centre"]["error"], report["msaa:1"]["error"])
+        self.assertIn("modelled_ms", report.frames("nearest")[0])
+        self.assertNotIn("modelled_ms", report.frames("dim")[0])
+        four = beampipe.render(beampipe.open_trace(self.folder / "fence.json"), "msaa:4").picture
+        numpy.testing.assert_array_equal(report.picture("dim")[..., :3], four / 2)
+        for command in (["report", "out"], ["plot", "out", "-o", "plot.svg"], ["model", "out", "--over", "msaa:1"],
+                        ["report", "out", "out", "-o", "both.html"]):
+            self.run_own(*command)
+        self.assertTrue((self.folder / "out/report.html").exists())
+
+    def test_a_sweep_keeps_results_until_the_script_changes(self):
+        plan = {"beampipe_sweep": 1, "traces": ["fence.json"], "techniques": ["dim", "nearest"], "errors": True}
+        (self.folder / "plan.json").write_text(json.dumps(plan))
+        sweep = ("sweep", "plan.json", "-o", "sweep")
+        self.assertIn("3 rendered", self.run_own(*sweep))
+        self.assertIn("0 rendered", self.run_own(*sweep))
+        before = beampipe.read_table(self.folder / "sweep/table.csv")
+        self.write(0.25)
+        try:
+            self.assertIn("3 rendered", self.run_own(*sweep))
+        finally:
+            self.write(0.5)
+        after = beampipe.read_table(self.folder / "sweep/table.csv")
+        self.assertNotEqual(before["rmse"][0], after["rmse"][0])
+        self.assertEqual(before["rmse"][-1], after["rmse"][-1])  # of nearest
+
+    def test_tasks_of_a_cluster_start_the_script(self):
+        plan = {"beampipe_sweep": 1, "traces": ["fence.json"], "techniques": ["dim"]}
+        (self.folder / "cluster.json").write_text(json.dumps(plan))
+        self.run_own("sweep", "cluster.json", "-o", "cluster", "--slurm", "--dry-run")
+        self.assertIn(f"exec '{sys.executable}' '{self.folder.resolve() / 'mine.py'}' 'sweep'",
+                      (self.folder / "cluster/slurm/array.sh").read_text())
+
+    def test_errors_are_one_line(self):
+        found = self.start("run", "fence.json", "-t", "broken", "-o", "failed")
+        self.assertEqual(found.returncode, 1)
+        self.assertRegex(found.stderr, r"\Abeampipe: error: ZeroDivisionError: division by zero.*mine.py\(\d+\): broken.*\n\Z")
+        self.assertEqual(self.start("run", "fence.json", "-t", "dimm", "-o", "failed").returncode, 2)
+        for name, wrong in [("small letters", "Dim"), ("there is one of this name already", "beam")]:
+            with self.assertRaisesRegex(beampipe.Error, f"technique {wrong}: .*{name}"):
+                beampipe.program(["--version"], [beampipe.Pattern([[0.5, 0.5]], name=wrong)])
+        with self.assertRaisesRegex(beampipe.Error, "found the spec beam"):
+            beampipe.program(["--version"], ["beam"])
+
+
 class Errors(unittest.TestCase):
     def check(self, pattern, work):
         with self.assertRaisesRegex(beampipe.Error, pattern) as caught:
@@ -231,7 +388,7 @@ class Errors(unittest.TestCase):
         points, size = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], {"width": 8, "height": 8}
         self.check("technique 'bea'", lambda: beampipe.render(trace, "bea"))
         self.check("pool=", lambda: beampipe.render(trace, "beam", pool=61))
-        self.check("expected a spec, a Pattern or a function, found int", lambda: beampipe.render(trace, 8))
+        self.check("expected a spec, a Pattern, a Merge or a function, found int", lambda: beampipe.render(trace, 8))
         self.check("expected no options, found pool", lambda: beampipe.render(trace, lambda t, f: image, pool=60))
         self.check(r"picture of 16 x 16 x 3 or 4 numbers, found \(4, 4, 3\)", lambda: beampipe.render(trace, lambda t, f: image))
         self.check("expected frames from 0 to 0, found 1", lambda: beampipe.render(trace, "beam", frames=1))

@@ -6,8 +6,9 @@
   print(found.table())                                    # errors and equivalent MSAA rates
   print(beampipe.inspect(trace, "beam", 160, 90))         # what happened in a pixel
 
-`compare` also takes techniques of your own (functions), sample patterns (Pattern) and metrics (functions). Rendering
-lets other Python threads run, and Ctrl-C ends it.
+`compare` also takes techniques of your own (functions), rules that merge fragments (Merge), sample patterns (Pattern)
+and metrics (functions). `program` is the command line with such techniques. Rendering lets other Python threads run, and
+Ctrl-C ends it.
 
   report = beampipe.Report("out")                         # of `beampipe run` or `beampipe compare`
   report["beam"]["error"]["rmse"]
@@ -25,12 +26,13 @@ if find_spec(f"{__name__}._native"):  # without it, the package reads results
     from . import _native, measures
     from ._native import Trace
     from .comparing import Comparison, Result, compare, equivalent_rate
+    from .own import Merge, program
     from .rendering import Inspection, Pattern, Rendering, inspect, reference, render, spec, techniques
     from .traces import make, open_trace, scenes, trace_from_arrays
 
     __version__: str = _native.version
-    __all__ += ["Comparison", "Inspection", "Pattern", "Rendering", "Result", "Trace", "compare",
-                "equivalent_rate", "inspect", "make", "measures", "open_trace", "reference", "render", "scenes", "spec",
+    __all__ += ["Comparison", "Inspection", "Merge", "Pattern", "Rendering", "Result", "Trace", "compare",
+                "equivalent_rate", "inspect", "make", "measures", "open_trace", "program", "reference", "render", "scenes", "spec",
                 "techniques", "trace_from_arrays"]
 
 

@@ -58,6 +58,7 @@ class Pattern:
             raise Error(f"{name}: expected a tile of at least 1 x 1 pixels, found {tile[0]} x {tile[1]}")
         self._techniques = {(x, y): _native.msaa_at(name, self._units(places(x, y) if callable(places) else places))
                             for y in range(tile[1]) for x in range(tile[0])}
+        self.technique = self._techniques[0, 0]  # of the tile's first pixel
 
     def _units(self, places: ArrayLike) -> list:
         try:
@@ -69,8 +70,8 @@ class Pattern:
         return numpy.clip(units, -1, 256).astype(int).tolist()
 
     def render(self, trace: Trace, frame: int, **how: Any) -> Rendering:
-        if len(self._techniques) == 1:
-            return _render_native(self._techniques[0, 0], trace, frame, **how)
+        if self.tile == (1, 1):
+            return _render_native(self.technique, trace, frame, **how)
         width, height = self.tile
         whole = None
         for (x, y), technique in self._techniques.items():
@@ -82,8 +83,9 @@ class Pattern:
         return whole
 
 
-# A spec, a pattern, or a function of (trace, frame) that returns a picture: height x width x 3 or 4, linear RGB and alpha.
-AnyTechnique = Union[str, Pattern, Callable[[Trace, int], ArrayLike]]
+# A spec, a Pattern, a Merge (own.py), or a function of (trace, frame) that returns a picture: height x width x 3 or 4,
+# linear RGB and alpha.
+AnyTechnique = Union[str, Pattern, "Merge", Callable[[Trace, int], ArrayLike]]
 
 
 def spec(technique: str, **options: Any) -> str:
@@ -100,11 +102,11 @@ def techniques() -> str:
 def name_of(technique: AnyTechnique) -> str:
     if isinstance(technique, str):
         return technique
-    if isinstance(technique, Pattern):
+    if hasattr(technique, "render"):
         return technique.name
     if callable(technique):
         return getattr(technique, "__name__", type(technique).__name__)
-    raise Error(f"technique: expected a spec, a Pattern or a function, found {type(technique).__name__}")
+    raise Error(f"technique: expected a spec, a Pattern, a Merge or a function, found {type(technique).__name__}")
 
 
 def _render_native(technique: _native.Technique, trace: Trace, frame: int, *, threads: int, memory_model: bool,
@@ -135,7 +137,7 @@ def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, t
                   memory_model: bool = True, hardware: Union[str, os.PathLike] = "titan_v") -> list[Rendering]:
     """The frames in this order; techniques with a history keep it from one to the next."""
     how = {"threads": threads, "memory_model": memory_model, "hardware": hardware}
-    if isinstance(technique, Pattern):
+    if hasattr(technique, "render"):
         return [technique.render(trace, frame, **how) for frame in frames]
     if not isinstance(technique, str):
         return [_render_own(technique, trace, frame) for frame in frames]

@@ -12,6 +12,7 @@ namespace beampipe {
 void add_traces(pybind11::module_& module);
 void add_rendering(pybind11::module_& module);
 void add_measures(pybind11::module_& module);
+void add_own_techniques(pybind11::module_& module);
 
 // A contiguous array of floats, converted if it is another one.
 using FloatArray = pybind11::array_t<float, pybind11::array::c_style | pybind11::array::forcecast>;

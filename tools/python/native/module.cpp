@@ -59,4 +59,5 @@ PYBIND11_MODULE(_native, module) {
   beampipe::add_traces(module);
   beampipe::add_rendering(module);
   beampipe::add_measures(module);
+  beampipe::add_own_techniques(module);
 }

@@ -1,0 +1,111 @@
+"""Techniques of the user's: rules that merge fragments, and the program `beampipe` with such techniques."""
+from __future__ import annotations
+
+import hashlib
+import inspect
+import os
+import re
+import sys
+from typing import Any, Callable, Iterable, Optional, Union
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native, rendering
+from ._native import Trace
+from .rendering import AnyTechnique, Pattern, Rendering
+from .results import Error
+
+
+class Merge:
+    """A technique that merges the fragments of each pixel by a rule of one's own.
+
+    rule(fragments) returns linear R, G and B times A, and A, the part of the pixel that is covered, 0..1; the background
+    shows through the rest. `fragments` is an array of records, near to far by depth, at least one:
+
+      area    of the triangle in the pixel, 0..1
+      mask    `positions` booleans: which of the positions it covers; a small triangle may cover none
+      color   linear R, G and B, shaded at the centroid
+      depth   at the centroid, from -1 (near) to 0 (far)
+      plane   depth is plane[0] + plane[1] (x - 1/2) + plane[2] (y - 1/2), x and y as in `places`
+      front   whether the front of the triangle is seen
+
+    A cutout or translucent surface has less area and fewer positions. places: positions x 2, x to the right and y down
+    from the pixel's upper left corner, 0..1. All stages are counted but the rule itself, which may run in any thread.
+    """
+
+    def __init__(self, rule: Callable[[NDArray], ArrayLike], *, positions: int = 256, name: str = ""):
+        if not callable(rule):
+            raise Error(f"rule: expected a function, found {type(rule).__name__}")
+        if positions not in (32, 64, 128, 256):
+            raise Error(f"positions: expected 32, 64, 128 or 256, found {positions}")
+        self.rule, self.name, self.positions = rule, name or rendering.name_of(rule), positions
+        self.places: NDArray[numpy.float64] = numpy.array(_native.places_of_positions(positions)) / 256
+        self.technique = _native.merge_technique(self.name, self._merge, positions)
+        self._record = numpy.dtype([("area", "f4"), ("depth", "f4"), ("plane", "f4", 3), ("front", "?"),
+                                    ("color", "f4", 3), ("mask", "?", positions)])
+
+    def _merge(self, first: NDArray, *columns: NDArray) -> NDArray:
+        """The pixels of a bin; those from first[i] to first[i + 1] are the fragments of pixel i."""
+        fragments = numpy.empty(len(columns[0]), self._record)
+        for key, column in zip(self._record.names, columns):
+            fragments[key] = column
+        merged = numpy.zeros((len(first) - 1, 4), numpy.float32)
+        for pixel in numpy.flatnonzero(numpy.diff(first)):
+            found = numpy.asarray(self.rule(fragments[first[pixel]:first[pixel + 1]]), numpy.float32)
+            if found.shape != (4,) or not numpy.isfinite(found).all():
+                raise Error(f"{self.name}: expected 4 finite numbers, R, G, B and A, from the rule, found {found}")
+            merged[pixel] = found
+        return merged
+
+    def render(self, trace: Trace, frame: int, **how: Any) -> Rendering:
+        return rendering._render_native(self.technique, trace, frame, **how)
+
+
+def _code_of(technique: AnyTechnique) -> tuple[str, str]:
+    """The file that the technique's code is in, and a digest of that file and of the script that runs."""
+    function = getattr(technique, "rule", technique)
+    try:
+        file: Optional[str] = inspect.getsourcefile(function if callable(function) else type(function))
+    except TypeError:
+        file = None
+    digest = hashlib.sha256()
+    for each in sorted({file, getattr(sys.modules["__main__"], "__file__", None)} - {None}):
+        if os.path.isfile(each):
+            with open(each, "rb") as code:
+                digest.update(code.read())
+    return os.path.basename(file or "Python"), digest.hexdigest()[:16]
+
+
+def _own_kind(technique: AnyTechnique) -> _native.OwnKind:
+    name = rendering.name_of(technique)
+    if isinstance(technique, str):
+        raise Error(f"technique: expected a function, a Merge or a Pattern, found the spec {name}")
+    if not re.fullmatch("[a-z][a-z0-9_]*", name):
+        raise Error(f"technique {name}: expected a name of small letters, digits and _")
+    if isinstance(technique, Merge):
+        native, described = technique.technique, technique.rule
+    elif isinstance(technique, Pattern) and technique.tile == (1, 1):
+        native, described = technique.technique, None
+    else:
+        def render(trace: Trace, frame: int) -> NDArray[numpy.float32]:
+            found = rendering.render(trace, technique, frames=frame, memory_model=False)
+            return numpy.dstack([found.picture, found.alpha])
+        native, described = _native.function_technique(name, render), technique
+    text = inspect.getdoc(described) if inspect.isroutine(described) else None
+    file, code = _code_of(technique)
+    return _native.OwnKind(native, (text or "a technique of one's own").splitlines()[0].rstrip("."), file, code)
+
+
+def program(arguments: Iterable[Union[str, os.PathLike]], techniques: Iterable[AnyTechnique] = ()) -> int:
+    """Runs the program `beampipe`, whose commands know these techniques by their names, and returns its exit code.
+
+    arguments: those of the command line, such as sys.argv[1:]. techniques: functions and patterns as for compare(), and
+    Merge. A script that ends in sys.exit(beampipe.program(sys.argv[1:], [mine])) is a program of its own:
+    `python3 script.py compare fence.json -t mine beam -o out`. Results of a script that has changed since are not taken
+    for those of this one. Call it from the main thread. Ctrl-C ends the process.
+    """
+    kinds = [_own_kind(each) for each in techniques]
+    script = getattr(sys.modules["__main__"], "__file__", None)
+    start = [sys.executable, os.path.abspath(script)] if script else []
+    return _native.program(["beampipe", *map(os.fspath, arguments)], start, kinds)
