@@ -13,7 +13,7 @@ The rules:
     is left includes no third-party headers but those of GLM, Highway and oneTBB.
 3.  Inside tools/: cli -> sweep -> report -> claims -> evaluate -> files, where sweep leaves out claims. Only cli
     includes stress, which includes none of them. cli, report and python may include inspect, which may include evaluate
-    and files, as python may.
+    and files. python, which includes cli as a whole program (cli/program.h), may include those too.
 4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may
     include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
@@ -36,7 +36,7 @@ ORDER = {
     "tools": {
         "cli": {"sweep", "report", "stress", "inspect", "claims", "evaluate", "files"},
         "sweep": {"report", "evaluate", "files"}, "report": {"inspect", "claims", "evaluate", "files"},
-        "inspect": {"evaluate", "files"}, "python": {"inspect", "evaluate", "files"},
+        "inspect": {"evaluate", "files"}, "python": {"cli", "inspect", "evaluate", "files"},
         "stress": set(), "claims": {"evaluate", "files"}, "evaluate": {"files"}, "files": set()},
     "pipeline": {
         "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
