@@ -142,6 +142,8 @@ class Program(InFolder):
         self.assertEqual(beampipe.render(self.trace, "beam", memory_model=False).times, {})
         with self.assertRaisesRegex(beampipe.Error, "none.json: expected a readable file or one of titan_v"):
             beampipe.render(self.trace, "beam", hardware="none.json")
+        with self.assertRaisesRegex(beampipe.Error, "none.json: expected a readable file or one of titan_v"):
+            beampipe.render(self.trace, lambda trace, frame: numpy.zeros((37, 61, 3)), hardware="none.json")
 
     def test_compare_finds_what_the_program_finds(self):
         found = beampipe.compare(self.trace, self.specs, metric="mae", ladder=[1, 4, 16])
@@ -152,6 +154,14 @@ class Program(InFolder):
             self.assertEqual(each.rate.samples, result["equivalent_msaa"])
         self.assertEqual(found.ladder, [(rung["samples"], rung["error"]) for rung in self.report.json["metric_msaa_ladder"]])
         self.assertIn("msaa:8", found.table())
+
+    def test_the_range_of_a_rate_by_rmse_is_that_of_the_program(self):
+        self.run_program("compare", "fence.json", "-t", *self.specs, "-o", "by_rmse")
+        found, report = beampipe.compare(self.trace, self.specs), beampipe.Report(self.folder / "by_rmse")
+        for each in found:
+            result = report[each.name]
+            for end in ("low", "high"):
+                self.assertAlmostEqual(getattr(each.rate, end) or 0, result.get(f"equivalent_msaa_{end}") or 0, places=12)
 
     def test_options_are_keywords(self):
         self.assertEqual(beampipe.spec("beam", pool=60), "beam:pool=60")

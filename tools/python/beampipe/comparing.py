@@ -19,7 +19,7 @@ AnyMetric = Union[str, Callable[[numpy.ndarray, numpy.ndarray], float]]
 
 def equivalent_rate(error: float, ladder: Sequence[tuple[int, float]]) -> Rate:
     """The rate at which msaa:N has this error. ladder: (N, error) for rising N."""
-    return Rate(**_native.equivalent_rate(error, ladder))
+    return Rate(**_native.equivalent_rate(error, ladder, None))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +82,10 @@ class _Metric:
             return self._own(pictures)
         return _native.measure(pictures, self.truths, self.pixels_per_degree, self.metric)[1][self.metric]
 
+    def blocks_of(self, renderings: list[Rendering]) -> list[float]:
+        """Squared errors of parts of the picture, which say how far a rate by RMSE is open; of other metrics, none."""
+        return _native.block_squares([each.picture for each in renderings], self.truths) if self.metric == "rmse" else []
+
     def all_of(self, renderings: list[Rendering]) -> tuple[dict[str, float], float]:
         pictures = [each.picture for each in renderings]
         values, errors = _native.measure(pictures, self.truths, self.pixels_per_degree, "")
@@ -123,9 +127,15 @@ def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetr
         renderings = rendered(technique, memory_model)
         found[name] = (renderings, *measured.all_of(renderings))
 
+    blocks = {name: measured.blocks_of(renderings) for name, (renderings, _, _) in found.items()}
+
     def rung(n: int) -> tuple[int, float]:
         spec = f"msaa:{n}"
-        return n, found[spec][2] if spec in found else measured.of(rendered(spec))
+        if spec in found:
+            return n, found[spec][2]
+        renderings = rendered(spec)
+        blocks[spec] = measured.blocks_of(renderings)
+        return n, measured.of(renderings)
 
     heights = [rung(n) for n in rungs]
     others = [error for name, (_, _, error) in found.items() if not own_rungs.get(name)]
@@ -137,6 +147,7 @@ def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetr
     results = {}
     for name, (renderings, errors, error) in found.items():
         own = own_rungs.get(name)
-        rate = Rate(own) if own else equivalent_rate(error, heights)
+        of_blocks = (blocks[name], [blocks[f"msaa:{n}"] for n, _ in heights]) if metric == "rmse" else None
+        rate = Rate(own) if own else Rate(**_native.equivalent_rate(error, heights, of_blocks))
         results[name] = Result(name, errors, error, rate, renderings)
     return Comparison(measured.name, results, reference, heights)

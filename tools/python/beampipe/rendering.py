@@ -156,6 +156,7 @@ def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable
     count what moves through caches and DRAM. hardware: a built-in name or a description's file.
     """
     name_of(technique)  # or it is none
+    _native.check_hardware(os.fspath(hardware))
     if options:
         if not isinstance(technique, str):
             raise Error(f"{name_of(technique)}: expected no options, found {', '.join(options)}")

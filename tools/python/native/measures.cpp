@@ -3,6 +3,7 @@
 
 #include <pybind11/stl.h>
 
+#include "tools/evaluate/blocks.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/python/native/bindings.h"
 #include "tools/python/native/interruptible.h"
@@ -60,10 +61,26 @@ py::array_t<float> map(const std::string& key, const FloatArray& picture, const 
   return array_of(values, {static_cast<py::ssize_t>(image.height), static_cast<py::ssize_t>(image.width)});
 }
 
-py::dict equivalent_rate(double error, const std::vector<std::pair<std::uint32_t, double>>& ladder) {
+// The squared errors of each block of the pictures.
+BlockSquares block_squares(const std::vector<FloatArray>& pictures, const std::vector<FloatArray>& references) {
+  const std::vector<Image> images = images_of(pictures, "image"), truths = images_of(references, "reference");
+  BlockSquares sums{};
+  for (std::size_t i = 0; i < images.size(); ++i) add_block_squares(images[i], truths.at(i), sums);
+  return sums;
+}
+
+// `blocks`: of the picture and of each rung, if errors are RMSEs.
+py::dict equivalent_rate(double error, const std::vector<std::pair<std::uint32_t, double>>& ladder,
+                         const std::optional<std::pair<BlockSquares, std::vector<BlockSquares>>>& blocks) {
   std::vector<LadderRung> rungs;
-  for (const auto& [samples, rung_error] : ladder) rungs.push_back({samples, rung_error});
-  const EquivalentMsaa rate = limited_equivalent_msaa(error, rungs);
+  std::vector<std::uint32_t> samples_of_rungs;
+  for (const auto& [samples, rung_error] : ladder) {
+    rungs.push_back({samples, rung_error});
+    samples_of_rungs.push_back(samples);
+  }
+  std::vector<EmrRange> ranges;
+  if (blocks) ranges.push_back(resampled_range(blocks->first, samples_of_rungs, blocks->second));
+  const EquivalentMsaa rate = limited_equivalent_msaa(error, rungs, std::move(ranges));
   py::dict all;
   all["samples"] = rate.samples;
   all["is_lower_bound"] = rate.is_lower_bound;
@@ -87,6 +104,7 @@ void add_measures(py::module_& module) {
   module.attr("meanings") = meanings;
   module.def("measure", &measure);
   module.def("map", &map);
+  module.def("block_squares", &block_squares);
   module.def("equivalent_rate", &equivalent_rate);
 }
 

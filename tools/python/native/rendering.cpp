@@ -125,6 +125,7 @@ void add_rendering(py::module_& module) {
     return technique;
   });
   module.def("techniques", &technique_help);
+  module.def("check_hardware", [](const std::string& named) { read_hardware(named); });
   module.def("render", &render);
   module.def("inspect", &inspect_pixel);
   module.attr("reference_spec") = kReferenceSpec;
