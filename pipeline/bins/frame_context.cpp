@@ -4,6 +4,7 @@
 #include "stages/geometry/vertex_setup.h"
 #include "stages/surface/sheets.h"
 #include "stages/surface/sheets_cost.h"
+#include "stages/temporal/motion.h"
 
 namespace beampipe {
 namespace {
@@ -13,13 +14,20 @@ ShadingRules with_colors(ShadingRules rules, SurfaceColors colors) {
   return rules;
 }
 
+// Are there draws whose vertices have moved within their mesh since the last frame?
+bool has_deformed_draws(const FrameJob& job) {
+  return job.run.history && job.run.history->frames > 0 &&
+         !meshes_before(job.trace, poses_of(job.frame), job.run.history->poses).empty();
+}
+
 }  // namespace
 
 FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
-    : frame(job.frame),
+    : trace(job.trace),
+      frame(job.frame),
       run(job.run),
       sinks(job.sinks),
-      triangles(vertex_setup(job.trace, frame, StageTimer(sinks.timeline)(setup))),
+      triangles(vertex_setup(trace, frame, StageTimer(sinks.timeline)(setup), has_deformed_draws(job))),
       surface_bytes(setup.bytes_written -
                     triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))),
       own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt
@@ -33,12 +41,12 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
     if (triangles.is_opaque(i)) continue;
     (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
   }
-  if (rules.takes_positions && has_alpha()) prepare_alpha_mask(job.trace);
+  if (rules.takes_positions && has_alpha()) prepare_alpha_mask();
   has_textures_ = !shader.is_flat() && !job.trace.images.empty();
   if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);
 }
 
-void FrameContext::prepare_alpha_mask(const Trace& trace) {
+void FrameContext::prepare_alpha_mask() {
   const TextureSet& textures = run.textures ? *run.textures : *own_textures;
   std::vector<bool> materials(trace.materials.size());
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {

@@ -12,6 +12,7 @@
 namespace beampipe {
 
 struct FrameContext {
+  const Trace& trace;
   const Frame& frame;
   const FrameInput& run;
   const FrameSinks sinks;
@@ -36,7 +37,7 @@ struct FrameContext {
 
  private:
   // Tests the alpha of cutouts and numbers sheets, for techniques whose fragments have mask positions.
-  void prepare_alpha_mask(const Trace& trace);
+  void prepare_alpha_mask();
 
   bool has_cutouts_ = false, has_blending_ = false, has_textures_ = false;
 };

@@ -112,7 +112,7 @@ void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, Curre
 void find_changes(Bin& bin, const DepthTestUnit& visibility, const std::vector<std::uint32_t>& looks, Clamp clamp,
                   TemporalFrame& over_time) {
   const BinStage stage = bin.stage(StageId::motion);
-  const MovingTile moving{bin.tile, bin.context.frame, bin.triangles().draws, over_time.to_last()};
+  const MovingTile moving = over_time.motion().of(bin);
   PixelContents found;
   if (clamp == Clamp::rest) found = contents(visibility.surface(), moving, looks, stage.timed());
   if (clamp == Clamp::camera) found.speeds = camera_speeds(visibility.surface(), moving, stage.timed());

@@ -5,15 +5,22 @@
 namespace beampipe {
 
 FrameMotion::FrameMotion(const FrameContext& context, const History& history)
-    : frame_(context.frame),
+    : context_(context),
       poses_(poses_of(context.frame, context.triangles.placements)),
-      to_last_(to_last_frame(poses_, history.frames > 0 ? history.poses : poses_)) {}
+      to_last_(to_last_frame(poses_, history.frames > 0 ? history.poses : poses_)),
+      deformations_(deformations(context.trace, poses_, history.frames > 0 ? history.poses : poses_,
+                                 context.triangles.trace_triangles)) {}
+
+MovingTile FrameMotion::of(const Bin& bin) const {
+  return {bin.tile, context_.frame, bin.triangles().draws, to_last_, &deformations_};
+}
 
 std::vector<glm::vec2> FrameMotion::find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const {
   const BinStage stage = bin.stage(StageId::motion);
-  std::vector<glm::vec2> vectors =
-      motion(surface.surface(), {bin.tile, frame_, bin.triangles().draws, to_last_}, stage.timed(), from);
+  const MovingTile moving = of(bin);
+  std::vector<glm::vec2> vectors = beampipe::motion(surface.surface(), moving, stage.timed(), from);
   surface.read_depths(stage);
+  stage.streams(deformed_pixels(surface.surface(), moving) * kMovedTriangleBytes);
   if (from == MotionFrom::ids) surface.read_colors(stage);
   stage.streams(bin.tile.pixels() * kMotionBytes);
   return vectors;

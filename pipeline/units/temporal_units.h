@@ -14,11 +14,10 @@ namespace beampipe {
 // How a frame has moved since the last one.
 class FrameMotion {
  public:
-  // `history`: what earlier frames left.
+  // `history`: what earlier frames left. `context` must outlive it.
   FrameMotion(const FrameContext& context, const History& history);
 
-  // Clip space of this frame to that of the last one, by draw.
-  const std::vector<glm::dmat4>& to_last() const { return to_last_; }
+  MovingTile of(const Bin& bin) const;
 
   // Stage `motion` of a bin: how the nearest surface of each pixel moved, row by row.
   std::vector<glm::vec2> find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const;
@@ -26,9 +25,10 @@ class FrameMotion {
   Poses take_poses() { return std::move(poses_); }  // for the history
 
  private:
-  const Frame& frame_;
+  const FrameContext& context_;
   Poses poses_;
   std::vector<glm::dmat4> to_last_;
+  Deformations deformations_;
 };
 
 class TemporalFrame {
@@ -39,7 +39,7 @@ class TemporalFrame {
   // What earlier frames left.
   const History& history() const { return history_; }
 
-  const std::vector<glm::dmat4>& to_last() const { return motion_.to_last(); }
+  const FrameMotion& motion() const { return motion_; }
 
   // FrameMotion::find, for `current`.
   void find_motion(Bin& bin, DepthTestUnit& surface, MotionFrom from = MotionFrom::ids);

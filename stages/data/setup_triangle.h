@@ -48,8 +48,10 @@ struct SetupTriangles {
   std::vector<FlatAttributes> attributes;  // one per triangle
   std::vector<std::uint32_t> draws;        // one per triangle: index into Frame::draws
   std::vector<SetupSurface> surfaces;      // one per triangle; empty if all triangles are flat
-  std::vector<SurfaceVertex> vertices;     // of the draws with materials
-  std::vector<DrawPlacement> placements;   // one per draw of the frame; empty if no draw has state
+  // One per triangle, if vertex_setup numbers them: index into the triangles of its draw's mesh.
+  std::vector<std::uint32_t> trace_triangles;
+  std::vector<SurfaceVertex> vertices;    // of the draws with materials
+  std::vector<DrawPlacement> placements;  // one per draw of the frame; empty if no draw has state
 
   bool is_opaque(std::uint32_t triangle) const { return surfaces.empty() || surfaces[triangle].is_opaque; }
 

@@ -238,6 +238,7 @@ struct DrawJob {
   const DrawPlacement& placement;
   std::uint32_t index;         // of the draw in the frame
   std::uint32_t first_vertex;  // where its vertices start in SetupTriangles::vertices, or kNoVertices
+  bool numbers_triangles;
 };
 
 // Sets up triangles of one draw and appends them to `out`. Depth planes and normals are found for a block of triangles
@@ -255,6 +256,7 @@ class TriangleSetup {
         transform_mirrors_(glm::determinant(glm::dmat3(job.draw.transform)) < 0),
         to_world_(elements_of(job.draw.transform)),
         draw_index_(job.index),
+        numbers_triangles_(job.numbers_triangles),
         vertices_(vertices),
         out_(out) {}
 
@@ -398,6 +400,7 @@ class TriangleSetup {
     triangle.front = front;
     add_attributes(t, material, front);
     out_.draws.push_back(draw_index_);
+    if (numbers_triangles_) out_.trace_triangles.push_back(static_cast<std::uint32_t>(t));
     if (has_surfaces()) out_.surfaces.push_back(surface(t, material, front, {first, second, third}));
     if (++block_.count == kSetupBlock) finish_block();
   }
@@ -489,6 +492,7 @@ class TriangleSetup {
   bool transform_mirrors_;
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
+  bool numbers_triangles_;
   const ProjectedVertex* vertices_;
   SetupTriangles& out_;
   Block block_;
@@ -500,6 +504,7 @@ void append(const SetupTriangles& part, SetupTriangles& whole) {
   whole.attributes.insert(whole.attributes.end(), part.attributes.begin(), part.attributes.end());
   whole.draws.insert(whole.draws.end(), part.draws.begin(), part.draws.end());
   whole.surfaces.insert(whole.surfaces.end(), part.surfaces.begin(), part.surfaces.end());
+  whole.trace_triangles.insert(whole.trace_triangles.end(), part.trace_triangles.begin(), part.trace_triangles.end());
 }
 
 constexpr std::size_t kChunk = 4096;  // vertices or triangles per task
@@ -588,11 +593,12 @@ void put_winners_first(const std::vector<Material>& materials, SetupTriangles& a
     values = std::move(reordered);
   };
   reorder(all.triangles), reorder(all.attributes), reorder(all.draws), reorder(all.surfaces);
+  reorder(all.trace_triangles);
 }
 
 }  // namespace
 
-SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters) {
+SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters, bool numbers_triangles) {
   SetupTriangles out;
   const View view(frame);
   SetupWork work;
@@ -619,7 +625,8 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
                       .draw = draw,
                       .placement = placement_of(i),
                       .index = i,
-                      .first_vertex = has_materials ? first_vertex : kNoVertices},
+                      .first_vertex = has_materials ? first_vertex : kNoVertices,
+                      .numbers_triangles = numbers_triangles},
                      out);
     if (has_material(draw, mesh)) {
       work.shaded_vertices += mesh.positions.size();
@@ -633,7 +640,8 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   work.triangles = out.triangles.size();
   counters.items_out = out.triangles.size();
   charge(work, counters);
-  counters.bytes_written += out.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes));
+  counters.bytes_written += out.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) +
+                            out.trace_triangles.size() * sizeof(std::uint32_t);
   counters.bytes_written += work.surfaces * kSurfaceBytes + work.tangents * sizeof(glm::vec4);
   return out;
 }

@@ -19,8 +19,9 @@
 namespace beampipe {
 
 // Runs on the threads of the oneTBB arena that it is called in. The result does not depend on their number. Sets the
-// counters' stage name.
-SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters);
+// counters' stage name. `numbers_triangles`: SetupTriangles::trace_triangles is wanted.
+SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters,
+                            bool numbers_triangles = false);
 
 // Does the frame draw a triangle that is not flat? One that is culled or out of view counts too.
 bool has_varying_surfaces(const Trace& trace, const Frame& frame);

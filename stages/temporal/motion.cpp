@@ -27,16 +27,47 @@ std::size_t draw_at(const SampleTile& surface, std::size_t i, const MovingTile& 
   return triangle == kNoTriangle ? in.frame.draws.size() : in.draws[triangle];
 }
 
-// Of what `draw` shows. The background's depth is beyond the far plane, and it moves as the far plane does.
-glm::vec2 pixel_motion(const MovingTile& in, std::size_t draw, double center_x, double center_y, float depth) {
+const Deformation* deformation_of(const MovingTile& in, std::size_t draw) {
+  const bool has_any = in.deformed && draw < in.deformed->draws.size();
+  return has_any && in.deformed->draws[draw] ? &*in.deformed->draws[draw] : nullptr;
+}
+
+glm::vec2 stored(const Movement<double>& moved) {
+  if (!moved.in_front) return glm::vec2(std::numeric_limits<float>::infinity());
+  return {nearest_half(static_cast<float>(moved.dx)), nearest_half(static_cast<float>(moved.dy))};
+}
+
+void project(const Mesh& mesh, const glm::dmat4& to_clip, const glm::uvec3& triangle, ClipPoint<double> corners[3]) {
+  double m[16];
+  for (int i = 0; i < 16; ++i) m[i] = to_clip[i / 4][i % 4];
+  for (int k = 0; k < 3; ++k) {
+    const glm::vec3& at = mesh.positions[triangle[k]];
+    corners[k] = in_clip<double>(m, at.x, at.y, at.z);
+  }
+}
+
+// Of a triangle of a deformed draw.
+glm::vec2 triangle_motion(const MovingTile& in, const Deformation& draw, std::uint32_t triangle, double center_x,
+                          double center_y) {
+  const glm::uvec3& vertices = draw.now->triangles[in.deformed->trace_triangles[triangle]];
+  ClipPoint<double> now[3], before[3];
+  project(*draw.now, draw.to_screen, vertices, now);
+  project(*draw.before, draw.to_last_screen, vertices, before);
+  return stored(vertex_movement<double>(now, before, in.frame.width, in.frame.height, center_x, center_y));
+}
+
+// Of what `draw` shows with this setup triangle. The background's depth is beyond the far plane, and it moves as the
+// far plane does.
+glm::vec2 pixel_motion(const MovingTile& in, std::size_t draw, std::uint32_t triangle, double center_x, double center_y,
+                       float depth) {
+  if (const Deformation* const deformed = deformation_of(in, draw))
+    return triangle_motion(in, *deformed, triangle, center_x, center_y);
   const Frame& frame = in.frame;
   const glm::dmat4& to_last = in.to_last[draw];
   const double farthest = draw == frame.draws.size() ? 0.0 : std::numeric_limits<double>::infinity();
   Reprojection<double> reprojection{{}, static_cast<double>(frame.width), static_cast<double>(frame.height)};
   for (int i = 0; i < 16; ++i) reprojection.m[i] = to_last[i / 4][i % 4];
-  const Movement<double> moved = movement<double>(reprojection, center_x, center_y, depth, farthest);
-  if (!moved.in_front) return glm::vec2(std::numeric_limits<float>::infinity());
-  return {nearest_half(static_cast<float>(moved.dx)), nearest_half(static_cast<float>(moved.dy))};
+  return stored(movement<double>(reprojection, center_x, center_y, depth, farthest));
 }
 
 // From the draw's clip space to the frame's; z is not needed there.
@@ -84,6 +115,42 @@ Poses poses_of(const Frame& frame, const std::vector<DrawPlacement>& placements)
   return poses;
 }
 
+std::vector<const Mesh*> meshes_before(const Trace& trace, const Poses& now, const Poses& before) {
+  std::vector<const Mesh*> meshes(now.draws.size());
+  bool has_any = false;
+  for (std::size_t i = 0; i < std::min(now.draws.size(), before.draws.size()); ++i) {
+    if (now.draws[i].mesh == before.draws[i].mesh) continue;
+    const Mesh &to = trace.meshes[now.draws[i].mesh], &from = trace.meshes[before.draws[i].mesh];
+    const bool same_vertices = to.positions.size() == from.positions.size() && to.ws.empty() && from.ws.empty();
+    if (same_vertices && to.triangles == from.triangles) meshes[i] = &from, has_any = true;
+  }
+  return has_any ? meshes : std::vector<const Mesh*>{};
+}
+
+Deformations deformations(const Trace& trace, const Poses& now, const Poses& before,
+                          const std::vector<std::uint32_t>& trace_triangles) {
+  Deformations found{{}, trace_triangles};
+  const std::vector<const Mesh*> meshes = meshes_before(trace, now, before);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const auto to_screen = [&](const Poses& poses) {
+      return to_frame(poses.draws[i].placement) * poses.view_projection * poses.draws[i].transform;
+    };
+    found.draws.push_back(meshes[i] ? std::optional<Deformation>({&trace.meshes[now.draws[i].mesh], meshes[i],
+                                                                  to_screen(now), to_screen(before)})
+                                    : std::nullopt);
+  }
+  return found;
+}
+
+std::uint64_t deformed_pixels(const SampleTile& surface, const MovingTile& in) {
+  std::uint64_t pixels = 0;
+  if (in.deformed && !in.deformed->draws.empty())
+    each_nearest(surface, in.tile, [&](std::int32_t, std::int32_t, std::size_t at) {
+      pixels += deformation_of(in, draw_at(surface, at, in)) != nullptr;
+    });
+  return pixels;
+}
+
 std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
   const glm::dmat4 to_world = glm::inverse(now.view_projection), still = before.view_projection * to_world;
   std::vector<glm::dmat4> matrices;
@@ -106,9 +173,11 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const MovingTile& in, S
   std::vector<glm::vec2> vectors;
   vectors.reserve(in.tile.pixels());
   each_nearest(surface, in.tile, [&](std::int32_t x, std::int32_t y, std::size_t at) {
-    vectors.push_back(pixel_motion(in, draw_at(surface, at, in), x + 0.5, y + 0.5, surface.depth[at]));
+    vectors.push_back(
+        pixel_motion(in, draw_at(surface, at, in), surface.triangle[at], x + 0.5, y + 0.5, surface.depth[at]));
   });
   charge_motion(vectors.size(), surface.samples_per_pixel, from, counters);
+  charge_deformed(deformed_pixels(surface, in), counters);
   return vectors;
 }
 
@@ -132,7 +201,7 @@ PixelContents contents(const SampleTile& surface, const MovingTile& in, const st
   const Tile& tile = in.tile;
   const std::size_t samples = surface.samples_per_pixel;
   PixelContents found;
-  std::uint64_t shown = 0;  // draws, in all pixels together
+  std::uint64_t shown = 0, deformed = 0;  // draws, in all pixels together
   std::vector<std::size_t> here;
   for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
     for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
@@ -144,7 +213,8 @@ PixelContents contents(const SampleTile& surface, const MovingTile& in, const st
         if (std::find(here.begin(), here.end(), draw) != here.end()) continue;
         here.push_back(draw);
         look ^= looks[draw];
-        const glm::vec2 moves = pixel_motion(in, draw, x + 0.5, y + 0.5, surface.depth[i]);
+        deformed += deformation_of(in, draw) != nullptr;
+        const glm::vec2 moves = pixel_motion(in, draw, surface.triangle[i], x + 0.5, y + 0.5, surface.depth[i]);
         fastest = greater(fastest, square_length(moves.x, moves.y));
       }
       found.looks.push_back(look);
@@ -153,6 +223,7 @@ PixelContents contents(const SampleTile& surface, const MovingTile& in, const st
     }
   }
   charge_contents(found.looks.size(), samples, shown, counters);
+  charge_deformed(deformed, counters);
   return found;
 }
 
@@ -160,7 +231,7 @@ std::vector<float> camera_speeds(const SampleTile& surface, const MovingTile& in
   std::vector<float> speeds;
   speeds.reserve(in.tile.pixels());
   each_nearest(surface, in.tile, [&](std::int32_t x, std::int32_t y, std::size_t at) {
-    const glm::vec2 moves = pixel_motion(in, in.frame.draws.size(), x + 0.5, y + 0.5, surface.depth[at]);
+    const glm::vec2 moves = pixel_motion(in, in.frame.draws.size(), kNoTriangle, x + 0.5, y + 0.5, surface.depth[at]);
     speeds.push_back(nearest_half(std::sqrt(square_length(moves.x, moves.y))));
   });
   charge_camera_speeds(speeds.size(), counters);

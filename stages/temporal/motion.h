@@ -3,12 +3,14 @@
 // contents() does the same for everything in a pixel: whether it still looks the same, and how fast it moves.
 // camera_speeds() tells how far the camera alone has moved the nearest surface.
 //
-// Motion follows both frames' cameras and both transforms of the surface's draw, but not vertices that move within
-// their mesh. The background counts as the far plane of a world that stands still. So does what a draw's state paints
-// behind the world; what it paints in front counts as the near plane.
+// Motion follows both frames' cameras and both transforms of the surface's draw, and vertices that move within their
+// mesh, as those of skinned and morphed models do. The background counts as the far plane of a world that stands still.
+// So does what a draw's state paints behind the world; what it paints in front counts as the near plane.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -20,6 +22,25 @@ namespace beampipe {
 
 // `placements`: one per draw; empty if no draw has state.
 Poses poses_of(const Frame& frame, const std::vector<DrawPlacement>& placements = {});
+
+// Returns, for each draw, the mesh that it had in the last frame, if only its vertices' places differ from those of the
+// mesh that it has now; else null. Empty if there is no such draw.
+std::vector<const Mesh*> meshes_before(const Trace& trace, const Poses& now, const Poses& before);
+
+// A draw whose vertices have moved within its mesh.
+struct Deformation {
+  const Mesh *now, *before;
+  glm::dmat4 to_screen, to_last_screen;  // from the mesh now, and before, to clip space, whose z is not needed
+};
+
+struct Deformations {
+  std::vector<std::optional<Deformation>> draws;      // of the frame; empty if none is deformed
+  const std::vector<std::uint32_t>& trace_triangles;  // as SetupTriangles has them
+};
+
+// `trace_triangles` must outlive the result.
+Deformations deformations(const Trace& trace, const Poses& now, const Poses& before,
+                          const std::vector<std::uint32_t>& trace_triangles);
 
 // Returns the matrices from this frame's clip space to that of the last frame: one for each draw, and then one for
 // everything that stands still. A draw is recognized by its index and its mesh. If the last frame does not have it, it
@@ -39,7 +60,14 @@ struct MovingTile {
   const Frame& frame;
   const std::vector<std::uint32_t>& draws;  // one per triangle
   const std::vector<glm::dmat4>& to_last;   // as to_last_frame returns them
+  const Deformations* deformed = nullptr;   // null: no draw is
 };
+
+// What is read of a pixel's triangle if its draw is deformed: three indices, and its vertices in both meshes.
+inline constexpr std::uint64_t kMovedTriangleBytes = 3 * 4 + 6 * 12;
+
+// How many pixels of the tile show a deformed draw at their nearest sample.
+std::uint64_t deformed_pixels(const SampleTile& surface, const MovingTile& in);
 
 // Returns, for each pixel of the tile, row by row, the vector from a point of the nearest surface to where that was: in
 // pixels, rounded to fp16; infinity if it was behind the eye.

@@ -65,6 +65,29 @@ inline OperationCounts draw_cost() {
   });
 }
 
+// Of a triangle whose vertices have moved: its vertices in both frames, and the movement, beyond that of a draw that is
+// not deformed.
+inline OperationCounts deformed_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const std::uint32_t table[1] = {};
+    const Counted<std::int32_t> index(0, counts);
+    for (int k = 0; k < 3; ++k) fetch(table, index);
+    const Counted<double> one(1.0, counts);
+    Counted<double> m[16];
+    for (Counted<double>& element : m) element = one;
+    ClipPoint<Counted<double>> corners[2][3];
+    for (auto& frame : corners)
+      for (auto& corner : frame) fetch(table, index), corner = in_clip(m, one, one, one);
+    vertex_movement(corners[0], corners[1], one, one, one, one);
+  });
+}
+
+// `triangles`: shown in pixels, of deformed draws.
+inline void charge_deformed(std::uint64_t triangles, StageCounters& counters) {
+  counters.ops += deformed_cost() * triangles;
+  counters.bytes_read += kMovedTriangleBytes * triangles;
+}
+
 // `samples`: per pixel.
 inline void charge_motion(std::uint64_t pixels, std::size_t samples, MotionFrom from, StageCounters& counters) {
   counters.items_in += pixels * samples;

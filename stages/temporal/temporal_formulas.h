@@ -45,6 +45,48 @@ Movement<Real> movement(const Reprojection<Real>& to_last, Real center_x, Real c
   return {last.x - center_x, last.y - center_y, last.w > zero};
 }
 
+// A point in clip space; depth is not needed.
+template <class Real>
+struct ClipPoint {
+  Real x, y, w;
+};
+
+// A vertex in clip space. `m`: a column-major matrix from the vertex's space.
+template <class Real>
+ClipPoint<Real> in_clip(const Real m[16], Real x, Real y, Real z) {
+  const auto row = [&](int r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
+  return {row(0), row(1), row(3)};
+}
+
+template <class Real>
+ClipPoint<Real> cross(const ClipPoint<Real>& a, const ClipPoint<Real>& b) {
+  return {a.y * b.w - a.w * b.y, a.w * b.x - a.x * b.w, a.x * b.y - a.y * b.x};
+}
+
+template <class Real>
+Real dot(const ClipPoint<Real>& a, const ClipPoint<Real>& b) {
+  return a.x * b.x + a.y * b.y + a.w * b.w;
+}
+
+// As movement, of a triangle whose vertices have moved: the pixel's centre is the sum of the vertices by three weights,
+// and so was what it shows. The plane of a triangle that is seen edge-on has no weights, and counts as behind the eye.
+template <class Real>
+Movement<Real> vertex_movement(const ClipPoint<Real> now[3], const ClipPoint<Real> before[3], Real width, Real height,
+                               Real center_x, Real center_y) {
+  const Real zero(0.0), one(1.0), two(2.0), half(0.5);
+  const ClipPoint<Real> center{two * center_x / width - one, one - two * center_y / height, one};
+  const ClipPoint<Real> normals[3] = {cross(now[1], now[2]), cross(now[2], now[0]), cross(now[0], now[1])};
+  const Real inverse = one / dot(now[0], normals[0]);
+  const Real weights[3] = {dot(normals[0], center) * inverse, dot(normals[1], center) * inverse,
+                           dot(normals[2], center) * inverse};
+  const auto sum = [&](Real ClipPoint<Real>::*part) {
+    return before[0].*part * weights[0] + before[1].*part * weights[1] + before[2].*part * weights[2];
+  };
+  const Real w = sum(&ClipPoint<Real>::w), per_w = one / w;
+  return {(sum(&ClipPoint<Real>::x) * per_w + one) * half * width - center_x,
+          (one - sum(&ClipPoint<Real>::y) * per_w) * half * height - center_y, w > zero};
+}
+
 template <class Real>
 Real square_length(Real x, Real y) {
   return x * x + y * y;

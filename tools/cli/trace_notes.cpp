@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pipeline/spec.h"
+#include "stages/temporal/motion.h"
 #include "traces/files/json.h"
 
 namespace beampipe {
@@ -68,10 +69,12 @@ std::string note_on_motion(const Trace& trace, const std::vector<std::size_t>& f
                            const std::vector<std::string>& specs, const std::string& file) {
   std::size_t draws = 0, changed = 0;
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    const std::vector<Draw>&before = trace.frames[frames[i - 1]].draws, &now = trace.frames[frames[i]].draws;
-    draws += now.size();
-    if (now.size() != before.size()) continue;
-    for (std::size_t d = 0; d < now.size(); ++d) changed += before[d].mesh != now[d].mesh;
+    const Poses before = poses_of(trace.frames[frames[i - 1]]), now = poses_of(trace.frames[frames[i]]);
+    draws += now.draws.size();
+    if (now.draws.size() != before.draws.size()) continue;
+    const std::vector<const Mesh*> followed = meshes_before(trace, now, before);
+    for (std::size_t d = 0; d < now.draws.size(); ++d)
+      changed += before.draws[d].mesh != now.draws[d].mesh && (followed.empty() || !followed[d]);
   }
   if (changed == 0 || specs.empty()) return "";
   return file + ": " + std::to_string(changed) + " of " + std::to_string(draws) +

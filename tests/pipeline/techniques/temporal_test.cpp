@@ -41,6 +41,16 @@ TEST(Temporal, ReprojectionFollowsADrawUnderAStillCamera) {
   for (const char* spec : {"taa:1,blend=0.001", "dvm:blend=0.001"}) expect_shifted(spec, columns(), after);
 }
 
+TEST(Temporal, ReprojectionFollowsVertices) {
+  Trace before = columns();
+  before.meshes.push_back(before.meshes[0]);
+  for (glm::vec3& at : before.meshes[1].positions) at.x += 1;
+  Trace after = before;
+  after.frames[0].draws[0].mesh = 1;
+  for (const char* spec : {"taa:1,blend=0.001", "taa:1,blend=0.001,shading=forward", "dvm:blend=0.001"})
+    expect_shifted(spec, before, after);
+}
+
 TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
   const Trace trace = random_trace(147, 81, 200, 7);  // several tiles, and odd sizes
   for (const char* spec : {"taa:8", "dvm", "dvm:clamp=camera", "dvm:clamp=variance", "dvm:extra=4"})

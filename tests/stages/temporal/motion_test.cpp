@@ -91,6 +91,111 @@ TEST(Motion, FollowsTheCameraByDepth) {
   EXPECT_EQ(vectors(surface, now, before)[0].x, std::numeric_limits<float>::infinity());
 }
 
+// A draw of one triangle, whose vertices are those of mesh 1 now and were those of mesh 0.
+struct Deformed {
+  Trace trace;
+  Frame now, before;
+
+  Deformed(const Frame& frame, const std::vector<glm::vec3>& moved, const std::vector<glm::vec3>& at)
+      : now(frame), before(frame) {
+    trace.meshes.resize(2);
+    trace.meshes[0].positions = moved, trace.meshes[1].positions = at;
+    for (Mesh& mesh : trace.meshes) mesh.triangles = {{0, 1, 2}}, mesh.colors = {glm::vec3(1)};
+    now.draws[0].mesh = 1;
+  }
+
+  std::vector<glm::vec2> vectors(const SampleTile& surface, StageCounters& counters) const {
+    const std::vector<std::uint32_t> numbers = {0}, draws = {0};
+    const Poses to = poses_of(now), from = poses_of(before);
+    const Deformations deformed = deformations(trace, to, from, numbers);
+    return motion(surface, {kTile, now, draws, to_last_frame(to, from), &deformed}, counters);
+  }
+  std::vector<glm::vec2> vectors() const {
+    StageCounters ignored;
+    return vectors(full_surface(-0.5f), ignored);
+  }
+};
+
+TEST(Motion, FollowsVerticesThatAllMoveAlike) {
+  const std::vector<glm::vec3> before = {{1, 1, 0}, {9, 2, 0}, {3, 8, 0}};
+  std::vector<glm::vec3> now = before;
+  for (glm::vec3& at : now) at += glm::vec3(2.5, 1, 0);
+  for (const glm::vec2& v : Deformed(flat_frame(kIdentity), before, now).vectors()) {
+    EXPECT_NEAR(v.x, -2.5, kHalf * 2.5);
+    EXPECT_NEAR(v.y, 1, kHalf);  // y is down
+  }
+}
+
+TEST(Motion, FollowsATriangleThatGrows) {
+  // Twice as large about the lower left corner of the frame: a point at (x, y), y up, was at half of both.
+  const std::vector<glm::vec3> before = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, now = {{0, 0, 0}, {16, 0, 0}, {0, 16, 0}};
+  const std::vector<glm::vec2> found = Deformed(flat_frame(kIdentity), before, now).vectors();
+  for (std::int32_t row = 0; row < kSize; ++row)
+    for (std::int32_t column = 0; column < kSize; ++column) {
+      const double x = column + 0.5, up = kSize - row - 0.5;
+      const glm::vec2 v = found[static_cast<std::size_t>(row * kSize + column)];
+      EXPECT_NEAR(v.x, -x / 2, kHalf * kSize);
+      EXPECT_NEAR(v.y, up / 2, kHalf * kSize);
+    }
+}
+
+TEST(Motion, FollowsVerticesInPerspective) {
+  // A triangle that is parallel to the picture comes from 12 to 10 in front of the camera, as in
+  // FollowsTheCameraByDepth.
+  const std::vector<glm::vec3> before = {{-3, -3, -12}, {5, -2, -12}, {0, 4, -12}},
+                               now = {{-3, -3, -10}, {5, -2, -10}, {0, 4, -10}};
+  const std::vector<glm::vec2> found = Deformed(perspective_frame(), before, now).vectors();
+  for (std::int32_t column = 0; column < kSize; ++column) {
+    const double x = column + 0.5 - kSize / 2;
+    EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * 10 / 12 - x, kHalf * kSize) << column;
+  }
+  std::vector<glm::vec3> behind = before;
+  for (glm::vec3& at : behind) at.z = 12;
+  EXPECT_EQ(Deformed(perspective_frame(), behind, now).vectors()[0].x, std::numeric_limits<float>::infinity());
+}
+
+TEST(Motion, FollowsVerticesAndTheTransformOfTheirDraw) {
+  const std::vector<glm::vec3> before = {{1, 1, 0}, {9, 2, 0}, {3, 8, 0}};
+  std::vector<glm::vec3> now = before;
+  for (glm::vec3& at : now) at.y += 1;
+  Deformed moved(flat_frame(kIdentity), before, now);
+  moved.now.draws[0].transform = glm::translate(kIdentity, glm::dvec3(3, 0, 0));
+  for (const glm::vec2& v : moved.vectors()) {
+    EXPECT_NEAR(v.x, -3, kHalf * 4);
+    EXPECT_NEAR(v.y, 1, kHalf * 4);
+  }
+}
+
+TEST(Motion, OtherTrianglesAreNotFollowed) {
+  const std::vector<glm::vec3> before = {{1, 1, 0}, {9, 2, 0}, {3, 8, 0}}, now = {{2, 1, 0}, {10, 2, 0}, {4, 8, 0}};
+  Deformed turned(flat_frame(kIdentity), before, now);
+  turned.trace.meshes[0].triangles = {{0, 2, 1}};
+  EXPECT_EQ(turned.vectors()[0], glm::vec2(0));
+  Deformed more(flat_frame(kIdentity), before, now);
+  more.trace.meshes[0].positions.emplace_back(0);
+  EXPECT_EQ(more.vectors()[0], glm::vec2(0));
+  EXPECT_TRUE(meshes_before(more.trace, poses_of(more.now), poses_of(more.before)).empty());
+}
+
+TEST(Motion, DeformedDrawsAreCharged) {
+  const std::vector<glm::vec3> before = {{1, 1, 0}, {9, 2, 0}, {3, 8, 0}}, now = {{2, 1, 0}, {10, 2, 0}, {4, 8, 0}};
+  const Deformed moved(flat_frame(kIdentity), before, now);
+  SampleTile surface = full_surface(-0.5f);
+  surface.triangle[0] = kNoTriangle;
+  StageCounters counters, still;
+  moved.vectors(surface, counters);
+  Deformed rigid = moved;
+  rigid.now.draws[0].mesh = 0;
+  rigid.vectors(surface, still);
+  const std::uint64_t pixels = kSize * kSize - 1;
+  EXPECT_EQ(counters.bytes_read - still.bytes_read, pixels * (3 * 4 + 6 * 12));
+  // Three indices and six vertices are fetched; three rows of a matrix for each vertex.
+  EXPECT_EQ(counters.ops.fetch - still.ops.fetch, pixels * 9);
+  EXPECT_EQ(counters.ops.convert, still.ops.convert);
+  // Quotients: the pixel's coordinates, one over the determinant and one over w.
+  EXPECT_EQ(counters.ops.special - still.ops.special, pixels * 4);
+}
+
 std::vector<glm::vec2> placed_vectors(const SampleTile& surface, const Frame& now, const Frame& before,
                                       const DrawPlacement& placement) {
   StageCounters counters;
