@@ -184,7 +184,8 @@ TEST(Counters, NoStageIsFree) {
         EXPECT_GT(counters.items_in, 0u) << place;
         EXPECT_GT(counters.items_out, 0u) << place;
         // Windows of one pair are not compared with what follows them.
-        if (spec != "beam:order=sorted,window=one") EXPECT_GT(counters.ops.total(), 0u) << place;
+        const std::uint64_t least = spec == "beam:order=sorted,window=one" ? 0 : 1;
+        EXPECT_GE(counters.ops.total(), least) << place;
         EXPECT_GT(counters.bytes_read, 0u) << place;
         EXPECT_LE(counters.lanes_used, counters.lanes_issued) << place;
       }
