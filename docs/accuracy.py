@@ -4,7 +4,7 @@
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
        docs/accuracy.py sizes PROGRAM MODELS -o DIR    some specs in four sizes
        docs/accuracy.py culling PROGRAM MODELS -o DIR  some specs on the 17 scenes, culled the other way
-       docs/accuracy.py results|steps|capacities|pools|readings TABLE
+       docs/accuracy.py results|steps|pools|readings TABLE
        docs/accuracy.py density|losses SIZES_TABLE
        docs/accuracy.py faces TABLE CULLING_TABLE
        docs/accuracy.py scenes PROGRAM DIR TABLE SIZES_TABLE
@@ -182,14 +182,6 @@ def bytes_of(table, spec):
     return [mean([max(value, 0.5) for value in values]) for values in (*places, list(map(sum, zip(*places))))]
 
 
-def print_capacities(table):
-    """Bytes on chip, and geometric mean and least EMR, by positions."""
-    print_head("positions", "spec", "bytes on chip", "EMR: geometric mean", "least")
-    for bits, spec in CAPACITIES.items():
-        rates = table.rates(spec)
-        print_row(bits, f"`{spec}`", f"{bytes_of(table, spec)[0]:.0f}", mean_rate(rates), least_rate(rates))
-
-
 def print_pools(table):
     """What records in memory move through L2, and how long the frame takes, beside those with the largest pool."""
     print_head("technique", *(f"`pool={pool}`" for pool in POOLS[:-1]))
@@ -268,7 +260,7 @@ plot {', '.join(plots)}
 
 TABLES = {"losses": print_losses,
           "results": print_results, "steps": print_steps, "density": print_density,
-          "capacities": print_capacities, "pools": print_pools, "readings": print_readings}
+          "pools": print_pools, "readings": print_readings}
 
 
 def main(arguments):
