@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """Compares ACAA with MSAA, for docs/techniques.md.
 
-usage: docs/acaa_against_msaa.py pictures|rounds|saved|tiles|coverage PROGRAM TRACE...
+usage: docs/acaa_against_msaa.py pictures|saved|tiles PROGRAM TRACE...
 
 PROGRAM is for instance beampipe. `pictures` prints, trace by trace, the RMSE between the picture of each ACAA and that
-of msaa:8, and which part of the DRAM bytes that seven more samples cost MSAA are saved by ACAA. `rounds` prints what
-more samples cost. `saved` prints, for pictures of several widths, which part of the DRAM bytes of MSAA is geometry, and
-what ACAA saves. `tiles` prints what a GPU with tile memory moves, with tiles that fit. `coverage` prints what it costs
-if the shader must test depth.
+of msaa:8, and which part of the DRAM bytes that seven more samples cost MSAA are saved by ACAA. `saved` prints,
+for pictures of several widths, which part of the DRAM bytes of MSAA is geometry, and what ACAA saves. `tiles` prints
+what a GPU with tile memory moves, with tiles that fit.
 """
 import json
 import pathlib
@@ -20,10 +19,7 @@ PICTURES = ["acaa:8", "acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:8
 ONE, EIGHT, ACAA = "msaa:1,prepass", "msaa:8,prepass", "acaa:8"
 SAME_FORMAT = "msaa:8,color=rgba16f,prepass"  # as the accumulator's, and as in the talk
 GEOMETRY = {"vertex_setup", "sample_raster", "shade"}
-ROUNDS = [f"{technique}:{samples}" for technique in ("acaa", "msaa") for samples in (8, 32, 128)]
 WIDTHS = [320, 1280, 1920, 3840]
-SHADER = "acaa:8,coverage=shader"
-PARTS = ["titan_v", "mali_g710"]
 MALI = pathlib.Path(__file__).resolve().parent.parent / "tools/evaluate/hardware/mali_g710.json"
 TILES = [("msaa:8", 8), ("msaa:8,prepass", 8), ("acaa:8", 8), ("acaa:8", 16)]  # two tiles of msaa:8 do not fit at 16
 
@@ -51,17 +47,6 @@ def pictures(program, traces, folder):
         one, eight, acaa = (dram_bytes(results[spec]) for spec in (ONE, EIGHT, ACAA))
         measure.print_row(name(trace), *[f"{difference:.5f}" for difference in differences],
                           f"{100 * (eight - acaa) / (eight - one):.0f} %")
-
-
-def rounds(program, traces, folder):
-    measure.print_head("scene", "technique", "bytes off chip", "DRAM MB", "ms", "EMR")
-    for trace in traces:
-        results = measure.results(program, "compare", trace, ROUNDS, folder)
-        for spec in ROUNDS:
-            result = results[spec]
-            measure.print_row(name(trace), f"`{spec}`", result["framebuffer_bytes_per_pixel"],
-                              f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['in_turn']:.3f}",
-                              f"{result['equivalent_msaa']:.3g}")
 
 
 def saved(program, traces, folder):
@@ -93,19 +78,7 @@ def tiles(program, traces, folder):
                               f"{dram_bytes(result) / 1e6:.1f}", f"{times(result)['in_turn']:.3f}")
 
 
-def coverage(program, traces, folder):
-    measure.print_head("scene", "technique", "`shade`: invocations, millions", "operations, millions",
-                       *(f"ms, `{part}`" for part in PARTS))
-    for trace in traces:
-        results = [measure.results(program, "run", trace, [ACAA, SHADER], folder, "--hardware", part) for part in PARTS]
-        for spec in (ACAA, SHADER):
-            shade = measure.stages(results[0][spec])["shade"]
-            measure.print_row(name(trace), f"`{spec}`", f"{shade['lanes_issued'] / 1e6:.2f}",
-                              f"{shade['ops']['total'] / 1e6:.0f}",
-                              *(f"{times(result[spec])['in_turn']:.3f}" for result in results))
-
-
-TABLES = {table.__name__: table for table in (pictures, rounds, saved, tiles, coverage)}
+TABLES = {table.__name__: table for table in (pictures, saved, tiles)}
 
 if __name__ == "__main__":
     if len(sys.argv) < 4 or sys.argv[1] not in TABLES:

@@ -4,7 +4,7 @@
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
        docs/accuracy.py sizes PROGRAM MODELS -o DIR    some specs in four sizes
        docs/accuracy.py culling PROGRAM MODELS -o DIR  some specs on the 17 scenes, culled the other way
-       docs/accuracy.py results|steps|bins|capacities|pools|readings TABLE
+       docs/accuracy.py results|steps|pools|readings TABLE
        docs/accuracy.py density|losses SIZES_TABLE
        docs/accuracy.py faces TABLE CULLING_TABLE
        docs/accuracy.py scenes PROGRAM DIR TABLE SIZES_TABLE
@@ -58,10 +58,8 @@ READINGS = ["casav", *(f"casav:{reading}" for reading in (
     "overlap=over", "overlap=transition", "extents=slab",
     "order=near-first,layers=1", "order=near-first,layers=8",
     "order=stream,layers=8")), EXACT_MASKS]
-BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
-        for spec in ("beam", "beam:bits=128,pool=30", "beam:bits=64,pool=24")}
 ALL = list(dict.fromkeys(SCENES + FACES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + OTHERS +
-                         READINGS + sum(POOLED.values(), []) + sum(BINS.values(), [])))
+                         READINGS + sum(POOLED.values(), [])))
 
 
 def sweep(program, models, folder, plan, other_way=False):
@@ -184,14 +182,6 @@ def bytes_of(table, spec):
     return [mean([max(value, 0.5) for value in values]) for values in (*places, list(map(sum, zip(*places))))]
 
 
-def print_capacities(table):
-    """Bytes on chip, and geometric mean and least EMR, by positions."""
-    print_head("positions", "spec", "bytes on chip", "EMR: geometric mean", "least")
-    for bits, spec in CAPACITIES.items():
-        rates = table.rates(spec)
-        print_row(bits, f"`{spec}`", f"{bytes_of(table, spec)[0]:.0f}", mean_rate(rates), least_rate(rates))
-
-
 def print_pools(table):
     """What records in memory move through L2, and how long the frame takes, beside those with the largest pool."""
     print_head("technique", *(f"`pool={pool}`" for pool in POOLS[:-1]))
@@ -243,14 +233,6 @@ def print_readings(table):
         f"{rmse_ratio(table, spec):.1f}"])
 
 
-def print_bins(table):
-    """The specs have bins of 32 pixels, and those of 16 and 8 that follow."""
-    print_head("technique", *(f"`bin={bin}`: {title}" for bin in (32, 16, 8) for title in ("geometric mean", "least")))
-    for spec, specs in BINS.items():
-        rates = [table.rates(each) for each in specs]
-        print_row(f"`{spec}`", *(summary(of_spec) for of_spec in rates for summary in SUMMARIES.values()))
-
-
 def draw_frontier(table, path):
     """Memory against EMR: a line of `beam` by its positions, and labelled points for the others."""
     line = [(bytes_of(table, spec)[2], mean(table.values("emr", spec))) for spec in CAPACITIES.values()]
@@ -277,8 +259,8 @@ plot {', '.join(plots)}
 
 
 TABLES = {"losses": print_losses,
-          "results": print_results, "steps": print_steps, "density": print_density, "bins": print_bins,
-          "capacities": print_capacities, "pools": print_pools, "readings": print_readings}
+          "results": print_results, "steps": print_steps, "density": print_density,
+          "pools": print_pools, "readings": print_readings}
 
 
 def main(arguments):

@@ -7,7 +7,6 @@ PROGRAM is for instance beampipe. The folders are PART/SCENE, as `beampipe run T
 PART/SCENE` wrote them; those of one scene stand side by side. TABLE is one of these:
 
 times    milliseconds with their intervals, and the equivalent MSAA rate where `beampipe compare` wrote the first folder
-cores    milliseconds in turn, on cores and at once, and how unevenly bins fill the cores
 bins     what a bin has on chip, and milliseconds
 errors   times over that of the published pipeline, beside the paper's ratios
 beam     times of beam over those of MSAA, for several prices of shading
@@ -87,15 +86,6 @@ def times(program, folders):
         print_head("technique", "EMR", *quoted(names))
         for technique, of in found.items():
             print_row(f"`{technique}`", emr[technique], *cells_of(of, names))
-
-
-def cores(program, folders):
-    print_head("scene", "part", "technique", "in turn", "on cores", "at once", "busiest core, over the mean")
-    for scene, found in model(program, folders).items():
-        for technique, of in found.items():
-            for name, time in of.items():
-                print_row(scene, f"`{name}`", f"`{technique}`",
-                          *(f"{time[how]:.3f}" for how in ("in_turn", "on_cores", "at_once")), f"{time['bin_spread']['busiest_core']:.2f}")
 
 
 def kib_per_bin(result):
@@ -180,7 +170,7 @@ def measured(program, files):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "cores", "bins", "errors", "beam", "traffic", "measured"))
+    parser.add_argument("table", choices=("times", "bins", "errors", "beam", "traffic", "measured"))
     parser.add_argument("program")
     parser.add_argument("folders", nargs="+")
     options = parser.parse_args()
