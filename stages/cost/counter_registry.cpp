@@ -16,12 +16,11 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "msaa:N,at=centroid"},
       {"memory_chunks", "chunks",
        "chunks of records that composition read or wrote in memory, because the bin's pool was full",
-       "beam in near-first order"},
+       "beam, but in sorted order"},
       {"merges", "fragments",
-       "beam:order=sorted, casav in sorted order and alpha: fragments that were composed before the pixel "
-       "was "
+       "beam:order=sorted, casav in sorted order and alpha: fragments that were composed before the pixel was "
        "closed; others: how often two surfaces, aggregates or layers were merged",
-       "beam, alpha, z3"},
+       "beam, casav, alpha, z3"},
       {"tiny_triangles", "fragments", "small fragments, which cover no mask position",
        "beam:order=sorted, casav, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
@@ -102,8 +101,8 @@ const std::vector<FrameCounterInfo>& frame_counters() {
        "time that the simulator took on this machine; with_memory_model says whether it includes the memory model; "
        "modelling_run is, with --repeat, the time of the extra run that includes it"},
       {"modelled_ms", "milliseconds",
-       "time on the described hardware: overlap is the time of the busiest unit, sum that of the stages one after "
-       "another"},
+       "time on the described hardware: in_turn is that of the stages one after another, on_cores that with the bins "
+       "on cores, at_once that of the busiest unit"},
   };
   return counters;
 }

@@ -284,8 +284,10 @@ class Merges(unittest.TestCase):
         trace = half_plane(5.5)
         with self.assertRaisesRegex(ZeroDivisionError, "division"):
             beampipe.render(trace, beampipe.Merge(lambda fragments: 1 / 0))
-        with self.assertRaisesRegex(beampipe.Error, "rgb: expected 4 finite numbers, R, G, B and A, from the rule"):
+        with self.assertRaisesRegex(beampipe.Error, "rgb: expected 4 finite numbers from the rule, R, G, B and A"):
             beampipe.render(trace, beampipe.Merge(lambda fragments: [1, 1, 1], name="rgb"))
+        with self.assertRaisesRegex(beampipe.Error, r"A from 0 to 1, found \[0. 0. 0. 2.\]"):
+            beampipe.render(trace, beampipe.Merge(lambda fragments: [0, 0, 0, 2]))
         with self.assertRaisesRegex(beampipe.Error, "positions: expected 32, 64, 128 or 256, found 8"):
             beampipe.Merge(over, positions=8)
         with self.assertRaisesRegex(beampipe.Error, "rule: expected a function, found str"):
@@ -426,6 +428,7 @@ class Errors(unittest.TestCase):
         self.check("technique 'msaa:3'", lambda: beampipe.compare(trace, ["beam"], ladder=[3]))
         self.check("inside the pixel, found sample 1", lambda: beampipe.Pattern([[0.5, 0.5], [1, 0.5]]))
         self.check("1 to 32 samples, found 33", lambda: beampipe.Pattern([[0.5, 0.5]] * 33))
+        self.check("tile=.* beside a function", lambda: beampipe.Pattern(lambda x, y: [[0.5, 0.5]]))
         self.check("N x 2 positions", lambda: beampipe.Pattern([0.5, 0.5]))
         self.check(r"image: expected an array of height x width x 3 or 4 numbers, found \(4, 4\)",
                    lambda: beampipe.measures.rmse(image[..., 0], image))

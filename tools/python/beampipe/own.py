@@ -21,7 +21,8 @@ class Merge:
     """A technique that merges the fragments of each pixel by a rule of one's own.
 
     rule(fragments) returns linear R, G and B times A, and A, the part of the pixel that is covered, 0..1; the background
-    shows through the rest. `fragments` is an array of records, near to far by depth, at least one:
+    shows through the rest. `fragments` is a structured array, near to far by depth, with at least one element; fragments["area"] is
+    a column of it, and fragments[0]["area"] a number:
 
       area    of the triangle in the pixel, 0..1
       mask    `positions` booleans: which of the positions it covers; a small triangle may cover none
@@ -53,8 +54,9 @@ class Merge:
         merged = numpy.zeros((len(first) - 1, 4), numpy.float32)
         for pixel in numpy.flatnonzero(numpy.diff(first)):
             found = numpy.asarray(self.rule(fragments[first[pixel]:first[pixel + 1]]), numpy.float32)
-            if found.shape != (4,) or not numpy.isfinite(found).all():
-                raise Error(f"{self.name}: expected 4 finite numbers, R, G, B and A, from the rule, found {found}")
+            if found.shape != (4,) or not numpy.isfinite(found).all() or not -1e-3 <= found[3] <= 1.001:
+                raise Error(f"{self.name}: expected 4 finite numbers from the rule, R, G, B and A, and A from 0 to 1, "
+                            f"found {found}")
             merged[pixel] = found
         return merged
 

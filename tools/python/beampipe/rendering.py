@@ -52,8 +52,11 @@ class Pattern:
     """
 
     def __init__(self, places: Union[ArrayLike, Callable[[int, int], ArrayLike]], *, name: str = "pattern",
-                 tile: tuple[int, int] = (1, 1)):
-        self.name, self.tile = name, tile
+                 tile: Optional[tuple[int, int]] = None):
+        if callable(places) and tile is None:
+            raise Error(f"{name}: expected tile=(width, height) beside a function of x and y")
+        self.name, self.tile = name, tile or (1, 1)
+        tile = self.tile
         if min(tile) < 1:
             raise Error(f"{name}: expected a tile of at least 1 x 1 pixels, found {tile[0]} x {tile[1]}")
         self._techniques = {(x, y): _native.msaa_at(name, self._units(places(x, y) if callable(places) else places))
