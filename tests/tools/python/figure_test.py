@@ -57,6 +57,12 @@ class Figure(InFolder):
             (self.folder / "page.tex").write_text(page)
             subprocess.run([latex, "-interaction=batchmode", "page.tex"], cwd=self.folder, check=True, capture_output=True)
 
+    def test_rates_by_another_metric_say_so(self):
+        self.run_program("compare", "fence.json", "-t", "beam", "--metric", "flip", "--ladder", "1,8", "-o", "by_flip")
+        self.run_program("figure", "by_flip", "-o", "by_flip.svg", "--tex", "by_flip.tex")
+        self.assertIn("EMR by flip ", (self.folder / "by_flip.svg").read_text())
+        self.assertIn(r"& EMR by flip \\", (self.folder / "by_flip.tex").read_text())
+
     def test_errors_are_one_line_and_leave_the_old_figure(self):
         (self.folder / "old.svg").write_text("old")
         self.stand_in("import sys; sys.stdin.buffer.read(); sys.exit('no such codec')")

@@ -57,9 +57,10 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A trace, with the reference as its last column."""
+    """A trace, with the reference as its last column. metric: what its rates are equivalent by."""
     title: str
     columns: list[Column]
+    metric: str = "rmse"
 
     @property
     def size(self) -> tuple[int, int]:
@@ -97,7 +98,8 @@ def scene_of(found: Union[Report, Comparison], *, techniques: Optional[Sequence[
         truth = found.reference[frame].picture
         columns = [_column(name, found[name].renderings[frame].picture, truth, found[name].errors["rmse"],
                            found[name].rate) for name in wanted]
-    return Scene(title, columns + [Column(REFERENCE, truth)])
+    metric = found.json.get("metric", "rmse") if isinstance(found, Report) else found.metric
+    return Scene(title, columns + [Column(REFERENCE, truth)], metric)
 
 
 def where_techniques_differ(scene: Scene, count: int = 2) -> list[Crop]:
@@ -138,10 +140,15 @@ def _cut(array: NDArray, crop: Crop) -> NDArray:
     return array[y:y + height, x:x + width]
 
 
-def _numbers(column: Column) -> str:
+def _rate_name(metric: str) -> str:
+    return "EMR" if metric == "rmse" else f"EMR by {metric}"
+
+
+def _numbers(column: Column, metric: str) -> str:
     if column.errors is None:
         return ""
-    rate = f"EMR {column.rate}" if column.rate and not column.rate.does_not_converge else "no EMR"
+    name = _rate_name(metric)
+    rate = f"{name} {column.rate}" if column.rate and not column.rate.does_not_converge else f"no {name}"
     return f"{rate}\nRMSE {1000 * column.rmse:.3g} × 10⁻³"
 
 
@@ -206,7 +213,7 @@ def _draw_scene(page: _Page, scene: Scene, crops: Sequence[Crop], column: float,
                 at += w + GAP
             page.y -= crop_height
         if each.errors is not None:
-            page.text(x + column / 2, _numbers(each), ha="center", va="top", linespacing=1.3)
+            page.text(x + column / 2, _numbers(each, scene.metric), ha="center", va="top", linespacing=1.3)
     page.y = top - TITLE - 2 * (picture_height + GAP + crop_height)
     _draw_scale(page, scale, LEFT + (len(scene.columns) - 1) * (column + GAP), column, picture_height + crop_height)
     page.y = top - TITLE - (picture_height + crop_height)
@@ -346,7 +353,9 @@ def _tex_rate(rate: Optional[Rate]) -> str:
 
 def booktabs(scenes: Sequence[Scene]) -> str:
     """A table for LaTeX's booktabs: for each scene and technique, RMSE and EMR."""
-    lines = [r"\begin{tabular}{llrr}", r"\toprule", r"Scene & Technique & RMSE $\times 10^3$ & EMR \\"]
+    names = dict.fromkeys(_rate_name(scene.metric) for scene in scenes)
+    lines = [r"\begin{tabular}{llrr}", r"\toprule",
+             rf"Scene & Technique & RMSE $\times 10^3$ & {_tex(', '.join(names))} \\"]
     for scene in scenes:
         lines.append(r"\midrule")
         for i, column in enumerate(each for each in scene.columns if each.errors is not None):
