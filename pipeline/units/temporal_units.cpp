@@ -7,9 +7,12 @@ namespace beampipe {
 FrameMotion::FrameMotion(const FrameContext& context, const History& history)
     : context_(context),
       poses_(poses_of(context.frame, context.triangles.placements)),
-      to_last_(to_last_frame(poses_, history.frames > 0 ? history.poses : poses_)),
-      deformations_(deformations(context.trace, poses_, history.frames > 0 ? history.poses : poses_,
-                                 context.triangles.trace_triangles)) {}
+      to_last_(to_last_frame(poses_, last_poses(history))),
+      deformations_(deformations(context.trace, poses_, last_poses(history), context.triangles.trace_triangles)) {}
+
+const Poses& FrameMotion::last_poses(const History& history) const {
+  return history.frames > 0 ? history.poses : poses_;
+}
 
 MovingTile FrameMotion::of(const Bin& bin) const {
   return {bin.tile, context_.frame, bin.triangles().draws, to_last_, &deformations_};
@@ -18,7 +21,7 @@ MovingTile FrameMotion::of(const Bin& bin) const {
 std::vector<glm::vec2> FrameMotion::find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const {
   const BinStage stage = bin.stage(StageId::motion);
   const MovingTile moving = of(bin);
-  std::vector<glm::vec2> vectors = beampipe::motion(surface.surface(), moving, stage.timed(), from);
+  std::vector<glm::vec2> vectors = motion(surface.surface(), moving, stage.timed(), from);
   surface.read_depths(stage);
   stage.streams(deformed_pixels(surface.surface(), moving) * kMovedTriangleBytes);
   if (from == MotionFrom::ids) surface.read_colors(stage);

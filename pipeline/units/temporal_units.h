@@ -17,7 +17,7 @@ class FrameMotion {
   // `history`: what earlier frames left. `context` must outlive it.
   FrameMotion(const FrameContext& context, const History& history);
 
-  MovingTile of(const Bin& bin) const;
+  MovingTile of(const Bin& bin) const;  // it must not outlive the bin
 
   // Stage `motion` of a bin: how the nearest surface of each pixel moved, row by row.
   std::vector<glm::vec2> find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const;
@@ -25,6 +25,8 @@ class FrameMotion {
   Poses take_poses() { return std::move(poses_); }  // for the history
 
  private:
+  const Poses& last_poses(const History& history) const;  // in a first frame, those of this one
+
   const FrameContext& context_;
   Poses poses_;
   std::vector<glm::dmat4> to_last_;

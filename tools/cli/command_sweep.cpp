@@ -157,7 +157,8 @@ void submit(Sweep& sweep, const std::vector<PlotColumns>& plots) {
   request.all_parts = std::min(sweep.jobs.size(), arguments.tasks > 0 ? arguments.tasks : kMostTasks);
   request.parts = unfinished_parts(sweep, request.all_parts);
   if (request.parts.empty()) return merge(sweep, plots);
-  request.command = arguments.start;
+  request.command =
+      arguments.start.empty() ? std::vector{fs::read_symlink("/proc/self/exe").string()} : arguments.start;
   request.command.insert(request.command.end(),
                          {"sweep", fs::absolute(arguments.plan).string(), "-o", sweep.output.path().string()});
   if (arguments.allow_outside) request.command.push_back("--allow-outside");
@@ -218,7 +219,7 @@ void sweep(const SweepArguments& arguments, InterruptGate& gate) {
 
 void add_sweep_command(CommandLine& line, const std::vector<std::string>& start, InterruptGate& gate) {
   const auto arguments = std::make_shared<SweepArguments>();
-  arguments->start = start.empty() ? std::vector{fs::read_symlink("/proc/self/exe").string()} : start;
+  arguments->start = start;
   Command command =
       line.add_command("sweep", "Vary techniques, caches and hardware, and make one table of the results");
   command.add("PLAN", arguments->plan, "what is varied: a JSON file, see below").required();

@@ -13,9 +13,9 @@ namespace beampipe {
 // such surfaces are black. Empty if no frame does. `file`: the trace's name for the line.
 std::string note_on_darkness(const Trace& trace, const std::vector<std::size_t>& frames, const std::string& file);
 
-// One line about the draws that show another mesh than in the frame before, one with other triangles: techniques with a
-// history (`specs`) know no motion of these. Frames with another number of draws do not count: what
-// they show is new. Empty if there are no such draws or techniques. `frames`: rising.
+// One line about the draws that show a mesh with other triangles than in the frame before: techniques with a history
+// (`specs`) know no motion of these. Frames with another number of draws do not count: what they show is new. Empty if
+// there are no such draws or techniques. `frames`: rising.
 std::string note_on_motion(const Trace& trace, const std::vector<std::size_t>& frames,
                            const std::vector<std::string>& specs, const std::string& file);
 

@@ -78,7 +78,7 @@ Form<Maker> maker_form() {
           "version", [](const Maker&) { return program_version(); }, text, "Of the program.")
       .written(
           "program", [](const Maker&) { return program_digest(); }, digest,
-          "Digest of the program's file.")
+          "Digest of the program's file, and of the code of techniques that are not in it.")
       .written(
           "trace", [](const Maker& maker) { return digest_of(maker.plan.trace); }, digest,
           "Digest of the trace's content. Published figures belong to a trace by it.")

@@ -32,8 +32,8 @@ if find_spec(f"{__name__}._native"):  # without it, the package reads results
 
     __version__: str = _native.version
     __all__ += ["Comparison", "Inspection", "Merge", "Pattern", "Rendering", "Result", "Trace", "compare",
-                "equivalent_rate", "inspect", "make", "measures", "open_trace", "program", "reference", "render", "scenes", "spec",
-                "techniques", "trace_from_arrays"]
+                "equivalent_rate", "inspect", "make", "measures", "open_trace", "program", "reference", "render",
+                "scenes", "spec", "techniques", "trace_from_arrays"]
 
 
 def __getattr__(name: str):

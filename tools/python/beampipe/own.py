@@ -21,8 +21,8 @@ class Merge:
     """A technique that merges the fragments of each pixel by a rule of one's own.
 
     rule(fragments) returns linear R, G and B times A, and A, the part of the pixel that is covered, 0..1; the background
-    shows through the rest. `fragments` is a structured array, near to far by depth, with at least one element; fragments["area"] is
-    a column of it, and fragments[0]["area"] a number:
+    shows through the rest. `fragments` is a structured array of at least one fragment, near to far by depth:
+    fragments["area"] is a column of it, and fragments[0]["area"] a number.
 
       area    of the triangle in the pixel, 0..1
       mask    `positions` booleans: which of the positions it covers; a small triangle may cover none

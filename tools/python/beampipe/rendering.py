@@ -4,7 +4,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass, field
-from typing import Any, Callable, Iterable, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._native import Trace
 from .results import Error
+
+if TYPE_CHECKING:
+    from .own import Merge
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +58,8 @@ class Pattern:
                  tile: Optional[tuple[int, int]] = None):
         if callable(places) and tile is None:
             raise Error(f"{name}: expected tile=(width, height) beside a function of x and y")
-        self.name, self.tile = name, tile or (1, 1)
-        tile = self.tile
+        tile = tile or (1, 1)
+        self.name, self.tile = name, tile
         if min(tile) < 1:
             raise Error(f"{name}: expected a tile of at least 1 x 1 pixels, found {tile[0]} x {tile[1]}")
         self._techniques = {(x, y): _native.msaa_at(name, self._units(places(x, y) if callable(places) else places))
@@ -143,6 +146,7 @@ def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, t
     if hasattr(technique, "render"):
         return [technique.render(trace, frame, **how) for frame in frames]
     if not isinstance(technique, str):
+        _native.check_hardware(os.fspath(hardware))  # the others read it
         return [_render_own(technique, trace, frame) for frame in frames]
     native, history = _native.Technique(technique), _native.History()
     return [_render_native(native, trace, frame, history=history, **how) for frame in frames]
@@ -159,7 +163,6 @@ def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable
     count what moves through caches and DRAM. hardware: a built-in name or a description's file.
     """
     name_of(technique)  # or it is none
-    _native.check_hardware(os.fspath(hardware))
     if options:
         if not isinstance(technique, str):
             raise Error(f"{name_of(technique)}: expected no options, found {', '.join(options)}")

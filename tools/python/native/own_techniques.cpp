@@ -2,12 +2,15 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/fragment_units.h"
@@ -120,7 +123,7 @@ FrameResult render_merged(const FrameJob& job, const Framebuffer& framebuffer, i
   });
 }
 
-// rule(first, area, depth, plane, front, color, mask) is called for each bin (rendering.py explains the columns).
+// rule(first, area, depth, plane, front, color, mask) is called for each bin (own.py explains the columns).
 Technique merge_technique(const std::string& name, const SharedFunction& rule, int positions) {
   Technique technique;
   technique.spec = name;
@@ -136,9 +139,7 @@ Technique merge_technique(const std::string& name, const SharedFunction& rule, i
 
 std::vector<std::array<int, 2>> places_of_positions(int positions) {
   std::vector<std::array<int, 2>> places;
-  for (const SamplePattern& pattern : cell_positions(positions).patterns)
-    for (std::size_t i = 0; i < static_cast<std::size_t>(pattern.count); ++i)
-      places.push_back({pattern.x[i], pattern.y[i]});
+  for (const glm::ivec2& place : places_of(cell_positions(positions).patterns)) places.push_back({place.x, place.y});
   return places;
 }
 
