@@ -8,6 +8,7 @@
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
 #include "stages/surface/alpha_range.h"
+#include "stages/surface/footprint_filter.h"
 #include "stages/surface/lit_colors.h"
 #include "stages/surface/texture_filter.h"
 
@@ -15,6 +16,13 @@ namespace beampipe {
 namespace {
 
 glm::vec2 vector_of(const std::array<float, 2>& v) { return {v[0], v[1]}; }
+
+// How texture coordinates change along the sides of a footprint.
+TextureSlopes along_sides(const TexturePlace<float>& at, const Footprint& footprint) {
+  const glm::vec2 dx = vector_of(at.dx), dy = vector_of(at.dy);
+  const glm::vec2 right = dx * footprint.xx;
+  return {footprint.xy == 0.0f ? right : right + dy * footprint.xy, dy * footprint.yy};
+}
 
 // Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
 template <class Real>
@@ -277,7 +285,7 @@ const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) 
 }
 
 template <class TextureAlpha>
-float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width,
+float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                  TextureAlpha&& texture_alpha) const {
   if (is_opaque(triangle)) return 1.0f;
   const SetupSurface& surface = triangles_.surfaces[triangle];
@@ -292,17 +300,17 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
                                     weights);
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
-    const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
-    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), slopes));
+    return glm::vec4(
+        texture_alpha(*shader.material.base_texture, vector_of(at.uv), along_sides(at, footprint)));
   };
   const float alpha =
       alpha_at(shader, {vertex(0).color[3], vertex(1).color[3], vertex(2).color[3]}, weights, texture_place, fetch);
   return limited_alpha(alpha);
 }
 
-float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width,
+float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
-  return alpha_there(triangle, place, width,
+  return alpha_there(triangle, place, footprint,
                      [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
                        return filtered(textures_->chain(texture.image, ColorSpace::srgb), texture, uv, slopes,
                                        noting(texels, texture.image, ColorSpace::srgb))
@@ -310,7 +318,7 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, fl
                      });
 }
 
-SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                                      TexelRequests* texels) const {
   const float cutoff = alpha_cutoff(triangle);
   if (cutoff <= 0.0f) return {1.0f};
@@ -318,7 +326,7 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
   glm::vec4 shares;
   // Of a point; or what the texture's alpha is multiplied by.
   const float alpha = alpha_there(
-      triangle, place, width, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+      triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
         const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
         const FilterPlan plan = filter_plan(chain, texture, slopes);
         if (!plan.is_minified)
@@ -381,7 +389,7 @@ void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& 
 
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
   const ShadingPlace& place = invocation.place;
-  const float width = by_pixel ? 1.0f : invocation.width;
+  const Footprint footprint = by_pixel ? Footprint() : invocation.footprint;
   const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
   const auto [x, y] = from_anchor(static_cast<float>(place.x) + (by_pixel ? 0.5f : place.u),
                                   static_cast<float>(place.y) + (by_pixel ? 0.5f : place.v));
@@ -417,7 +425,7 @@ void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& 
         rules_.derivatives == Derivatives::quad && !by_pixel
             ? place_in_quad(set)
             : place_on_triangle<float>({v[0]->uvs[set], v[1]->uvs[set], v[2]->uvs[set]}, surface.planes, x, y, weights);
-    *texture_points[set] = {vector_of(at.uv), vector_of(at.dx) * width, vector_of(at.dy) * width};
+    *texture_points[set] = {vector_of(at.uv), along_sides(at, footprint)};
   }
 }
 
@@ -432,16 +440,18 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
     set_point(invocations[i], shader, inputs ? &inputs[i] : nullptr,
               {reads_set[0] ? &points[0][i] : nullptr, reads_set[1] ? &points[1][i] : nullptr});
   const bool is_kept = texels && texels->are_kept();
+  const int taps = rules_.colors == SurfaceColors::by_pixel ? 0 : rules_.texture_taps;
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
     const ColorSpace space = space_of(role);
     const MipChain& chain = textures_->chain(texture.image, space);
     const auto& at = points[texture.uv_set];
     std::array<float, kMostInvocations> lods;
     for (std::size_t i = 0; i < invocations.size(); ++i)
-      lods[i] = squared_footprint({at[i].dx, at[i].dy}, chain.levels[0]);
+      lods[i] = squared_footprint(at[i].slopes, chain.levels[0]);
     for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
     for (std::size_t i = 0; i < invocations.size(); ++i) {
-      const FilterPlan plan = filter_plan(chain, texture, {at[i].dx, at[i].dy}, lods[i]);
+      const FilterPlan plan = taps > 0 ? footprint_plan(chain, texture, at[i].slopes, taps)
+                                       : filter_plan(chain, texture, at[i].slopes, lods[i]);
       if (texels && !is_kept) texels->count(plan.texels());
       if (!inputs && !is_kept) continue;
       const glm::vec4 value =
@@ -454,9 +464,9 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
   });
 }
 
-glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
+glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                 TexelRequests* texels) const {
-  const Invocation invocation{triangle, place, width};
+  const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
   find_inputs({&invocation, 1}, texels, &inputs);
   SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
@@ -467,7 +477,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   glm::vec3 color(lit[0], lit[1], lit[2]);
   round_to(rules_.stored_as, color);
   if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
-  return {color, by_pixel ? alpha(triangle, place, width) : limited_alpha(found.alpha)};
+  return {color, by_pixel ? alpha(triangle, place, footprint) : limited_alpha(found.alpha)};
 }
 
 std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
@@ -500,7 +510,7 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     const Invocation& invocation = invocations[i];
     const std::uint32_t triangle = invocation.triangle;
     if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
-      colors[i] = color(triangle, invocation.place, invocation.width, texels);
+      colors[i] = color(triangle, invocation.place, invocation.footprint, texels);
       end_request(texels);
       continue;
     }
@@ -519,10 +529,10 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
   return colors;
 }
 
-void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,
+void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                TexelRequests& texels) const {
   if (is_flat(triangle)) return;
-  const Invocation invocation{triangle, place, width};
+  const Invocation invocation{triangle, place, footprint};
   find_inputs({&invocation, 1}, &texels, nullptr);
 }
 

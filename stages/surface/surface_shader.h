@@ -15,10 +15,21 @@
 #include "stages/surface/opacity.h"
 #include "stages/surface/surface_formulas.h"
 #include "stages/surface/texel_requests.h"
+#include "stages/surface/texture_filter.h"
 #include "stages/surface/texture_set.h"
 #include "traces/trace.h"
 
 namespace beampipe {
+
+// The part of a pixel that a colour stands for, as a parallelogram: its sides are (xx, xy) and (0, yy), in pixels to
+// the right and down.
+struct Footprint {
+  float xx = 1, xy = 0, yy = 1;
+
+  Footprint() = default;
+  Footprint(float side) : xx(side), yy(side) {}  // a square
+  Footprint(float right, float down, float height) : xx(right), xy(down), yy(height) {}
+};
 
 // A point in a pixel of the frame.
 struct ShadingPlace {
@@ -30,7 +41,7 @@ struct ShadingPlace {
 struct Invocation {
   std::uint32_t triangle;
   ShadingPlace place;
-  float width = 1.0f;  // of the area that the colour stands for, in pixels
+  Footprint footprint{};
 };
 
 // How a shader knows what part of a texture a pixel covers: from the planes of its own triangle, or as the difference
@@ -51,6 +62,9 @@ struct ShadingRules {
   MaterialStorage storage = MaterialStorage::none;
   AccumulatorFormat stored_as = AccumulatorFormat::fp32;  // colours are rounded to it
   SurfaceColors colors = SurfaceColors::by_place;
+  // Textures are means over footprints of at most so many taps: 1, 4 or 16 (stages/surface/footprint_filter.h). 0: as
+  // samplers ask for.
+  int texture_taps = 0;
   bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };
 
@@ -70,37 +84,37 @@ class SurfaceShader {
     return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
   }
 
-  // Linear RGB. `width`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it is
+  // Linear RGB. `footprint`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it is
   // null.
-  glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
+  glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return glm::vec3(shaded(triangle, place, width, texels));
+    return glm::vec3(shaded(triangle, place, footprint, texels));
   }
 
   // The same for several invocations, side by side, which takes less time. Each is a request of its own.
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const;
 
   // The same with alpha, which is 1 for flat triangles.
-  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f) const {
+  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
-    return shaded(triangle, place, width, nullptr);
+    return shaded(triangle, place, footprint, nullptr);
   }
 
   // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
-  void add_texels(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests& texels) const;
+  void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TexelRequests& texels) const;
 
-  // Alpha at a place, whatever SurfaceColors says. `width`, `texels`: as above. 1 for opaque triangles.
-  float alpha(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels = nullptr) const;
+  // Alpha at a place, whatever SurfaceColors says. `footprint`, `texels`: as above. 1 for opaque triangles.
+  float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TexelRequests* texels = nullptr) const;
 
   // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
-  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have. `width`,
+  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have. `footprint`,
   // `texels`: as above.
   struct CutoutPart {
     float part = 0;
     bool is_share = false;  // from tested alpha
   };
-  CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+  CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                          TexelRequests* texels = nullptr) const;
 
   // What the test of alpha(), of points without an area, says for all points of a square that lie in the triangle.
@@ -146,10 +160,11 @@ class SurfaceShader {
   // Where an invocation reads a texture, and how that changes over the area that its colour stands for. Not set at
   // first.
   struct TexturePoint {
-    glm::vec2 uv, dx, dy;
+    glm::vec2 uv;
+    TextureSlopes slopes;
   };
 
-  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels) const;
+  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TexelRequests* texels) const;
 
   // Sets what the shader knows of a point without its textures, and where it reads them, by set of texture coordinates.
   // Null: nobody wants to know.
@@ -160,7 +175,7 @@ class SurfaceShader {
   void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels, PointInputs<float>* inputs) const;
   // Alpha, where texture_alpha(texture, uv, slopes) says that of the texture.
   template <class TextureAlpha>
-  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width, TextureAlpha&& texture_alpha) const;
+  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TextureAlpha&& texture_alpha) const;
   ShaderInputs inputs_of(std::uint32_t triangle) const;
   // Does the material pass through a G-buffer?
   bool is_stored(const Material& material) const {
@@ -200,32 +215,32 @@ class TileShader {
   bool is_flat() const { return !shader_ || shader_->is_flat(); }
 
   // (u, v): in the pixel, from its upper left corner, 0..1.
-  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f,
+  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return shader_->color(triangle, place(pixel, u, v), width, texels);
+    return shader_->color(triangle, place(pixel, u, v), footprint, texels);
   }
   // Of triangles that are not flat.
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
     return shader_->colors(invocations, texels);
   }
-  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f) const {
+  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
-    return shader_->color_and_alpha(triangle, place(pixel, u, v), width);
+    return shader_->color_and_alpha(triangle, place(pixel, u, v), footprint);
   }
 
-  void add_texels(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+  void add_texels(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
                   TexelRequests& texels) const {
-    if (!is_flat(triangle)) shader_->add_texels(triangle, place(pixel, u, v), width, texels);
+    if (!is_flat(triangle)) shader_->add_texels(triangle, place(pixel, u, v), footprint, texels);
   }
 
-  float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+  float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
               TexelRequests* texels = nullptr) const {
-    return shader_->alpha(triangle, place(pixel, u, v), width, texels);
+    return shader_->alpha(triangle, place(pixel, u, v), footprint, texels);
   }
-  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
                                         TexelRequests* texels = nullptr) const {
-    return shader_->cutout_part(triangle, place(pixel, u, v), width, texels);
+    return shader_->cutout_part(triangle, place(pixel, u, v), footprint, texels);
   }
   CutoutCover cutout_cover(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float side) const {
     return shader_->cutout_cover(triangle, place(pixel, u, v), side);
