@@ -1,7 +1,9 @@
 #include "stages/beam/alpha_mask.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "stages/beam/alpha_mask_cost.h"
 #include "stages/surface/opacity.h"
@@ -24,12 +26,19 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
   }
 }
 
+// Places of a pixel on each axis, where its parts are looked up.
+int places_of(AlphaPlaces places) {
+  return places == AlphaPlaces::one ? 1 : places == AlphaPlaces::quarters ? 2 : 4;
+}
+
 // Takes from fragments what their triangles' alpha lets through.
 class AlphaMask {
  public:
-  AlphaMask(const TileShader& shader, const std::vector<SamplePattern>& patterns, TexelRequests* texels)
+  AlphaMask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
+            TexelRequests* texels)
       : shader_(shader),
         patterns_(patterns),
+        places_(places),
         texels_(texels),
         spacing_(1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()))) {}
 
@@ -52,18 +61,69 @@ class AlphaMask {
       end_request(texels_);
       return part;
     }
+    const CutoutCover cover = cover_of(fragment);
+    if (cover == CutoutCover::all) return 1.0f;
+    if (cover == CutoutCover::none) return 0.0f;
     ++work.masks, ++work.shares;
+    return places_ == AlphaPlaces::all ? test_each(fragment) : test_parts(fragment);
+  }
+
+  // What is known of the whole pixel from one look-up.
+  CutoutCover cover_of(const Fragment& fragment) {
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    ++work.covers;
+    const CutoutCover cover = shader_.tested_cover(fragment.triangle, fragment.pixel, texels_);
+    end_request(texels_);
+    return cover;
+  }
+
+  float test_each(Fragment& fragment) {
     const OpacityRanks ranks = ranks_of(fragment);
     const auto covered = static_cast<float>(fragment.mask.count());
     WideMask left;
     float sum = 0;
     const auto test = [&](std::size_t position, float u, float v) {
-      ++work.positions;
+      ++work.ranked;
       const float part = covered_part(fragment, u, v, spacing_);
       sum += part;
       if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
     };
     for_each_position(fragment.mask, patterns_, test, [&] { end_request(texels_); });
+    fragment.mask = left;
+    return sum / covered;
+  }
+
+  // In each part of the pixel, one look-up tells of all positions: alpha between four texels, or the part that passes.
+  float test_parts(Fragment& fragment) {
+    const OpacityRanks ranks = ranks_of(fragment);
+    const auto covered = static_cast<float>(fragment.mask.count());
+    const auto places = static_cast<float>(places_of(places_));
+    std::array<std::optional<SurfaceShader::CutoutPatch>, 16> patches;
+    WideMask left;
+    float sum = 0;
+    const auto test = [&](std::size_t position, float u, float v) {
+      const float column = std::floor(u * places), row = std::floor(v * places);
+      const float middle_u = (column + 0.5f) / places, middle_v = (row + 0.5f) / places;
+      std::optional<SurfaceShader::CutoutPatch>& patch = patches[static_cast<std::size_t>(row * places + column)];
+      if (!patch) {
+        work.alphas += shader_.work(fragment.triangle).alpha;
+        ++work.tests;
+        patch = shader_.cutout_patch(fragment.triangle, fragment.pixel, middle_u, middle_v, 1 / places, texels_);
+        work.mixed += patch->is_share;
+      }
+      if (patch->is_share) {
+        ++work.ranked;
+        sum += patch->part;
+        if (ranks.takes(static_cast<std::uint32_t>(position), patch->part)) left.set(position);
+      } else {
+        ++work.interpolated;
+        if (patch->alpha(u - middle_u, v - middle_v) < shader_.alpha_cutoff(fragment.triangle)) return;
+        sum += 1;
+        left.set(position);
+      }
+    };
+    for_each_position(fragment.mask, patterns_, test, [] {});
+    end_request(texels_);
     fragment.mask = left;
     return sum / covered;
   }
@@ -102,15 +162,16 @@ class AlphaMask {
 
   const TileShader& shader_;
   const std::vector<SamplePattern>& patterns_;
+  AlphaPlaces places_;
   TexelRequests* texels_;
   float spacing_;  // of the positions, in pixels
 };
 
 }  // namespace
 
-void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
-                std::vector<Fragment>& fragments, TexelRequests* texels) {
-  AlphaMask mask(shader, patterns, texels);
+void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
+                StageCounters& counters, std::vector<Fragment>& fragments, TexelRequests* texels) {
+  AlphaMask mask(shader, patterns, places, texels);
   for (Fragment& fragment : fragments) mask(fragment);
   const std::size_t before = fragments.size();
   std::erase_if(fragments, [](const Fragment& fragment) { return fragment.alpha <= 0; });

@@ -23,6 +23,9 @@ namespace beampipe {
 // positions of a grid; or there are no masks.
 enum class MaskSource { table, exact, grid, none };
 
+// Where in a pixel the texture of a cutout is looked up (stages/beam/alpha_mask.h).
+enum class AlphaPlaces { one, quarters, sixteenths, all };
+
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
   std::vector<SamplePattern> positions = {};  // 32 mask positions per pattern: one pattern for `table`, any for `exact`
@@ -36,6 +39,7 @@ struct BeamFragmentOptions {
   // Use the depth range of the clipped triangle, as the published rules do. If not, use the wider depth bounds of the
   // pair.
   bool clipped_depth = true;
+  AlphaPlaces alpha = AlphaPlaces::all;
 };
 
 // Options for masks on a grid, without the depth range of the clipped triangle. `grid` must outlive the result.

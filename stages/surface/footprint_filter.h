@@ -45,6 +45,20 @@ inline float tap_spread(float side, float taps, std::size_t level) {
   return std::sqrt(std::max(side * side - blur, 0.0f) * (taps * taps / (taps * taps - 1))) / side;
 }
 
+// The finest level in which the four texels around the middle of a footprint cover all of it, and the longer side of
+// the footprint's bounds in texels of that level: at most 1, or more in the last level.
+struct CoveringLevel {
+  std::size_t level = 0;
+  float side = 0;
+};
+inline CoveringLevel covering_level(const MipChain& chain, const TextureSlopes& slopes) {
+  const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
+  const glm::vec2 bounds = (glm::abs(slopes.dx) + glm::abs(slopes.dy)) * size;
+  CoveringLevel found{0, std::max(bounds.x, bounds.y)};
+  while (!(found.side <= 1) && found.level + 1 < chain.levels.size()) ++found.level, found.side /= 2;
+  return found;
+}
+
 // `most_taps`: 1, 4 or 16.
 inline FilterPlan footprint_plan(const MipChain& chain, const Texture& texture, const TextureSlopes& slopes,
                                  int most_taps) {

@@ -45,6 +45,30 @@ Real ambient_light(const Ambient& ambient, const Triple<Real>& direction, std::s
   return mixed(Real(ambient.ground[c]), Real(ambient.sky[c]), share);
 }
 
+// Microfacets that face half-way between light and eye, for each one of a mirror; `normal_half`: the cosine between
+// that direction and the normal.
+template <class Real>
+Real ggx_density(const Real& normal_half, const Real& alpha2) {
+  const Real root = normal_half * normal_half * (alpha2 - Real(1.0f)) + Real(1.0f);
+  return alpha2 / (root * root);
+}
+
+// What Smith's visibility divides by, for the cosines between the normal and light and eye.
+template <class Real>
+Real smith_divisor(const Real& normal_light, const Real& normal_eye, const Real& alpha2) {
+  const Real one(1.0f);
+  return (normal_eye + square_root(normal_eye * normal_eye * (one - alpha2) + alpha2)) *
+         (normal_light + square_root(normal_light * normal_light * (one - alpha2) + alpha2));
+}
+
+// Schlick's weight of the reflectance of grazing light.
+template <class Real>
+Real fresnel_weight(const Real& eye_half) {
+  const Real zero(0.0f), one(1.0f);
+  const Real grazing = one - lesser(greater(eye_half, zero), one), grazing2 = grazing * grazing;
+  return grazing2 * grazing2 * grazing;
+}
+
 // Linear RGB towards the eye. Ambient light is reflected diffusely, and from the mirrored direction, which roughness
 // turns towards the normal.
 template <class Real>
@@ -65,13 +89,8 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
     const Triple<Real> half_way = unit(sum(to_light, surface.to_eye));
     const Real normal_light = greater(dot(surface.normal, to_light), zero);
     const Real normal_half = dot(surface.normal, half_way);
-    const Real density_root = normal_half * normal_half * (alpha2 - one) + one;
-    const Real density = alpha2 / (density_root * density_root);
-    const Real smith = (normal_eye + square_root(normal_eye * normal_eye * (one - alpha2) + alpha2)) *
-                       (normal_light + square_root(normal_light * normal_light * (one - alpha2) + alpha2));
-    const Real specular = density / smith;
-    const Real grazing = one - lesser(greater(dot(surface.to_eye, half_way), zero), one), grazing2 = grazing * grazing;
-    const Real fresnel = grazing2 * grazing2 * grazing;
+    const Real specular = ggx_density(normal_half, alpha2) / smith_divisor(normal_light, normal_eye, alpha2);
+    const Real fresnel = fresnel_weight(dot(surface.to_eye, half_way));
     for (std::size_t c = 0; c < 3; ++c) {
       const Real reflectance = mirror[c] + (one - mirror[c]) * fresnel;
       const Real reflected = (one - reflectance) * diffuse[c] + reflectance * specular;
@@ -87,6 +106,45 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
     light[c] = light[c] + (one - mirror[c]) * diffuse[c] * ambient_light(*lighting.ambient, surface.normal, c) +
                mirror[c] * ambient_light(*lighting.ambient, mirrored, c);
   return light;
+}
+
+// How far reflected light may vary, about, around a point where the normal turns by up to `turn` against light and eye,
+// in radians to each side: a highlight from its brightest to its darkest there, and the bend of diffuse light, whose
+// slope does not change a mean. Of the strongest channel; ambient light varies little.
+template <class Real>
+Real light_range(const Reflector<Real>& surface, const Real& turn, const Lighting& lighting) {
+  const Real zero(0.0f), one(1.0f);
+  const Real roughness = greater(surface.roughness, Real(kLeastRoughness));
+  const Real alpha = roughness * roughness, alpha2 = alpha * alpha;
+  const Real normal_eye = greater(dot(surface.normal, surface.to_eye), Real(1e-3f));
+  const Real base = greater(greater(surface.base[0], surface.base[1]), surface.base[2]);
+  const Real mirror = lesser(mixed(Real(kDielectricReflectance), base, surface.metallic), one);
+  const Real bend = base * (one - surface.metallic) * (Real(0.25f) * turn * turn);
+  Real range = zero;
+  for (const Light& source : lighting.lights) {
+    const Triple<Real> to_light = triple<Real>(-source.direction);
+    const Triple<Real> half_way = unit(sum(to_light, surface.to_eye));
+    const Real normal_light = lesser(greater(dot(surface.normal, to_light) + turn, zero), one);
+    const Real normal_half = dot(surface.normal, half_way);
+    const Real sine = square_root(greater(one - normal_half * normal_half, zero));
+    const Real nearest = greater(sine - turn, zero), farthest = lesser(sine + turn, one);
+    const auto density = [&](const Real& of_sine) {
+      return ggx_density(square_root(one - of_sine * of_sine), alpha2);
+    };
+    const Real specular = (density(nearest) - density(farthest)) / smith_divisor(normal_light, normal_eye, alpha2);
+    const Real reflectance = mirror + (one - mirror) * fresnel_weight(dot(surface.to_eye, half_way));
+    const Real strongest(std::max(std::max(source.color.r, source.color.g), source.color.b));
+    range = range + strongest * normal_light * (reflectance * specular + bend);
+  }
+  return range;
+}
+
+// How far two directions of any length turn away from a third one, both together.
+template <class Real>
+Real turn_between(const Triple<Real>& middle, const Triple<Real>& a, const Triple<Real>& b) {
+  const Triple<Real> from = scaled(unit(middle), Real(-1.0f));
+  const Triple<Real> to_a = sum(unit(a), from), to_b = sum(unit(b), from);
+  return square_root(dot(to_a, to_a)) + square_root(dot(to_b, to_b));
 }
 
 // Roughness with what normals differ within the texel: the mean of unit vectors is the shorter the more they differ.

@@ -165,6 +165,44 @@ OperationCounts alpha_cost(const ShaderInputs& shader) {
   });
 }
 
+// Of light_range(): material_of() without colours, normals and directions to the eye at three points, and a look-up of
+// each texture that matters, whose four texels are compared.
+OperationCounts range_cost(const ShaderInputs& shader, const Lighting& lighting) {
+  if (shader.material.unlit) return {};
+  return count_operations([&](OperationCounts& counts) {
+    using Real = Counted<float>;
+    const Real one(1.0f, counts);
+    const Triple<Real> vector{one, one, one};
+    const ScreenPlane<Real> plane{one, one, one};
+    const BarycentricPlanes<Real> planes{plane, plane, plane};
+    SurfaceVertexOf<Real> vertex{
+        .to_eye = vector, .normal = vector, .tangent = vector, .tangent_sign = one, .color = {one, one, one, one}};
+    for (auto& uv : vertex.uvs) uv = {one, one};
+    PointInputs<Real> inputs;
+    inputs.color = {one, one, one, one};
+    for (int point = 0; point < 3; ++point) {
+      const Barycentrics<Real> weights = weights_at(planes, one, one);
+      const auto attribute = [&](auto member) {
+        auto result = vertex.*member;
+        for (Real& number : result) number = interpolated(number, number, number, weights);
+        return result;
+      };
+      set_attributes(shader, TriangleInputs<Real>{vector, one, vector, one}, attribute, inputs);
+      if (point > 0) continue;
+      for_each_texture<Real>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
+        inputs.*texel = {one, one, one, one};
+        if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
+        counted_place(vertex, texture.uv_set, planes, weights, Derivatives::analytic);
+        ++counts.fetch;
+        for (int i = 0; i < 12; ++i) static_cast<void>(greater(one, lesser(one, one)) + one);
+      });
+    }
+    if (!shader.has_own_normal) turn_between(vector, vector, vector);
+    turn_between(vector, vector, vector);
+    light_range(material_of(shader, inputs).reflector, one + one + one, lighting);
+  });
+}
+
 OperationCounts light_cost(const Material& material, const Lighting& lighting) {
   return count_operations([&](OperationCounts& counts) {
     using Real = Counted<float>;
@@ -264,7 +302,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
     Work& work = works_[work_index(triangles.surfaces[i].material, shader)];
     if (work.input_bytes == 0)
       work = {material_cost(shader, rules.derivatives), light_cost(shader.material, frame.lighting),
-              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader), shader_input_bytes(shader)};
+              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader),
+              range_cost(shader, frame.lighting), shader_input_bytes(shader)};
   }
 }
 
@@ -339,6 +378,111 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
       });
   if (!tested) return {alpha >= cutoff ? 1.0f : 0.0f};
   return {tested->share(shares, cutoff / alpha), true};
+}
+
+SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, const ShadingPlace& place,
+                                                       const Footprint& footprint, TexelRequests* texels) const {
+  const float cutoff = alpha_cutoff(triangle);
+  CutoutPatch patch{.is_share = true, .part = 1.0f};
+  if (cutoff <= 0.0f) return patch;
+  const TestedAlpha* tested = nullptr;
+  glm::vec4 shares;
+  const float factor = alpha_there(triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv,
+                                                                   const TextureSlopes& slopes) {
+    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+    if (filter_plan(chain, texture, slopes).is_minified) {
+      const std::uint32_t material = triangles_.surfaces[triangle].material;
+      tested = &textures_->tested_alpha(material);
+      shares = filtered(tested->shares, for_areas(texture), uv, slopes,
+                        noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+      return 1.0f;
+    }
+    patch.is_share = false;
+    const TexelQuad quad =
+        texels_around(chain, texture, 0, uv, noting(texels, texture.image, ColorSpace::srgb));
+    for (std::size_t i = 0; i < 4; ++i) patch.alphas[i] = quad.texels[i].a;
+    const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
+    patch.share = {quad.columns.share, quad.rows.share};
+    patch.right = slopes.dx * size / footprint.xx, patch.down = slopes.dy * size / footprint.yy;
+    return 1.0f;
+  });
+  if (tested) {
+    patch.part = tested->share(shares, cutoff / factor);
+  } else if (patch.is_share) {  // without a texture
+    patch.part = factor >= cutoff ? 1.0f : 0.0f;
+  }
+  patch.factor = factor;
+  return patch;
+}
+
+CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                                        TexelRequests* texels) const {
+  const std::uint32_t material = triangles_.surfaces[triangle].material;
+  if (textures_ == nullptr || textures_->alpha_test(material) == kNoAlphaTest || inputs_of(triangle).has_vertex_colors)
+    return CutoutCover::mixed;
+  CutoutCover cover = CutoutCover::mixed;
+  alpha_there(
+      triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+        const TestedAlpha& tested = textures_->tested_alpha(material);
+        const CoveringLevel covering = covering_level(tested.shares, slopes);
+        if (!(covering.side <= 1)) return 1.0f;
+        const TexelQuad quad =
+            texels_around(tested.shares, texture, covering.level, uv,
+                          noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+        const auto are_all = [&](float share) {
+          return std::ranges::all_of(quad.texels, [&](const glm::vec4& shares) { return shares[0] == share; });
+        };
+        cover = are_all(1.0f) ? CutoutCover::all : are_all(0.0f) ? CutoutCover::none : CutoutCover::mixed;
+        return 1.0f;
+      });
+  return cover;
+}
+
+float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                                 TexelRequests* texels) const {
+  if (is_flat(triangle) || material(triangle).unlit) return 0.0f;
+  const ShaderInputs shader = inputs_of(triangle);
+  const auto inputs_at = [&](float x, float y, const std::array<TexturePoint*, 2>& texture_points) {
+    ShadingPlace at = place;
+    at.u += x, at.v += y;
+    PointInputs<float> inputs{};
+    set_point({triangle, at, footprint}, shader, &inputs, texture_points);
+    return inputs;
+  };
+  std::array<TexturePoint, 2> points;
+  PointInputs<float> middle = inputs_at(0, 0, {&points[0], &points[1]});
+  const PointInputs<float> right = inputs_at(0.5f * footprint.xx, 0.5f * footprint.xy, {}),
+                           below = inputs_at(0, 0.5f * footprint.yy, {});
+  float turn = 0.5f * turn_between(middle.to_eye, right.to_eye, below.to_eye);  // of the half-way vector
+  if (!shader.has_own_normal) turn += turn_between(middle.normal, right.normal, below.normal);
+  for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
+    middle.*texel = {1.0f, 1.0f, 1.0f, 1.0f};
+    if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
+    const ColorSpace space = space_of(role);
+    const MipChain& chain = textures_->chain(texture.image, space);
+    const auto& [uv, slopes] = points[texture.uv_set];
+    const CoveringLevel covering = covering_level(chain, slopes);
+    const TexelQuad quad =
+        texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
+    const auto& all = quad.texels;
+    const glm::vec4 least = glm::min(glm::min(all[0], all[1]), glm::min(all[2], all[3])),
+                    most = glm::max(glm::max(all[0], all[1]), glm::max(all[2], all[3]));
+    const glm::vec4 mean = (all[0] + all[1] + all[2] + all[3]) * 0.25f;
+    if (role == TextureRole::metallic_roughness) {
+      middle.*texel = {mean.r, least.g, most.b, 1.0f};
+      return;
+    }
+    // What four texels span, they span over a length of one texel. A texel of several is the shorter the more they
+    // differ.
+    const glm::vec2 span = (glm::vec2(most) - glm::vec2(least)) * std::min(covering.side, 1.0f);
+    turn += std::abs(shader.material.normal_scale) * glm::length(span);
+    if (covering.level > 0) {
+      const float length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
+      turn += std::sqrt(2.0f * (1.0f - length));
+    }
+    middle.*texel = {mean.r, mean.g, mean.b, 0.0f};
+  });
+  return beampipe::light_range(material_of(shader, middle).reflector, turn, frame_.lighting);
 }
 
 // Texture coordinates and vertex alphas are quotients of linear functions. As long as the divisor is positive, they are

@@ -117,6 +117,34 @@ class SurfaceShader {
   CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                          TexelRequests* texels = nullptr) const;
 
+  // How far light may vary in a footprint around a place, about, in linear RGB (light_range in
+  // stages/surface/surface_formulas.h): by the highlights of normals that differ there. Textures of normals and
+  // roughness are read once, where four texels cover the footprint. 0 for flat and unlit triangles. `texels`: as above.
+  float light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                    TexelRequests* texels = nullptr) const;
+
+  // A cutout seen from one place: its four texels there tell alpha around it, or which part of the footprint passes.
+  struct CutoutPatch {
+    bool is_share = false;
+    float part = 0;  // of is_share
+    // Else alpha at (x, y) pixels from the place is bilinear between those of four texels.
+    std::array<float, 4> alphas{};              // upper left, upper right, lower left, lower right
+    glm::vec2 share{0.0f}, right{0.0f}, down{0.0f};  // between the texels, and how it changes per pixel
+    float factor = 1;                           // of alpha
+
+    float alpha(float x, float y) const {
+      const float s = share.x + x * right.x + y * down.x, t = share.y + x * right.y + y * down.y;
+      const float upper = alphas[0] + s * (alphas[1] - alphas[0]), lower = alphas[2] + s * (alphas[3] - alphas[2]);
+      return factor * (upper + t * (lower - upper));
+    }
+  };
+  CutoutPatch cutout_patch(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                           TexelRequests* texels = nullptr) const;
+
+  // What tested alpha, in a level where four texels cover a footprint, says for all of it. `texels`: as above.
+  CutoutCover tested_cover(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                           TexelRequests* texels = nullptr) const;
+
   // What the test of alpha(), of points without an area, says for all points of a square that lie in the triangle.
   // `corner`: the upper left one; `side`: in pixels.
   CutoutCover cutout_cover(std::uint32_t triangle, const ShadingPlace& corner, float side) const;
@@ -137,10 +165,10 @@ class SurfaceShader {
     return a == b || (is_flat(a) && is_flat(b) && flat_[a] == flat_[b]);
   }
 
-  // What an invocation costs: its operations, for the material, for light and for alpha alone, and bytes of what it
+  // What an invocation costs: its operations, for the material, for light and for alpha alone, what others cost, and bytes of what it
   // reads of the triangle and its vertices.
   struct Work {
-    OperationCounts material, light, alpha;
+    OperationCounts material, light, alpha, range;  // range: of light_range()
     std::uint64_t input_bytes = 0;
   };
   const Work& work(std::uint32_t triangle) const {
@@ -244,6 +272,20 @@ class TileShader {
   }
   CutoutCover cutout_cover(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float side) const {
     return shader_->cutout_cover(triangle, place(pixel, u, v), side);
+  }
+  SurfaceShader::CutoutPatch cutout_patch(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                                          const Footprint& footprint, TexelRequests* texels = nullptr) const {
+    return shader_->cutout_patch(triangle, place(pixel, u, v), footprint, texels);
+  }
+  // Of the whole pixel.
+  CutoutCover tested_cover(std::uint32_t triangle, std::uint32_t pixel, TexelRequests* texels = nullptr) const {
+    constexpr float kWidth = 1.125f;  // in pixels: with perspective, a pixel shows more than its slopes say
+    return shader_->tested_cover(triangle, place(pixel, 0.5f, 0.5f), kWidth, texels);
+  }
+  // Of triangles that are not flat.
+  float light_range(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
+                    TexelRequests* texels = nullptr) const {
+    return shader_->light_range(triangle, place(pixel, u, v), footprint, texels);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -138,6 +139,28 @@ glm::vec4 mean_of_steps(const MipChain& chain, const Texture& texture, const glm
       chain, 0,
       parts(texels_around(u, image.width, texture.wrap_u), step_width.x * static_cast<float>(image.width)),
       parts(texels_around(v, image.height, texture.wrap_v), step_width.y * static_cast<float>(image.height)), read);
+}
+
+// The four texels around a place in a level, as filtered_level() mixes them: upper left, upper right, lower left, lower
+// right; and their numbers in the level. Calls read(level, x, y) with each.
+struct TexelQuad {
+  std::array<glm::vec4, 4> texels;
+  TexelPair columns, rows;
+};
+template <class Read>
+TexelQuad texels_around(const MipChain& chain, const Texture& texture, std::size_t level, const glm::vec2& uv,
+                        Read&& read) {
+  const MipLevel& image = chain.levels[level];
+  TexelQuad quad;
+  quad.columns = texels_around(in_texels(uv.x, image.width, texture.wrap_u), image.width, texture.wrap_u);
+  quad.rows = texels_around(in_texels(uv.y, image.height, texture.wrap_v), image.height, texture.wrap_v);
+  std::size_t i = 0;
+  for (const std::uint32_t row : {quad.rows.first, quad.rows.second})
+    for (const std::uint32_t column : {quad.columns.first, quad.columns.second}) {
+      read(level, column, row);
+      quad.texels[i++] = chain.texel(level, column, row);
+    }
+  return quad;
 }
 
 // How a texture is filtered somewhere: in which levels, and at how many points.

@@ -12,7 +12,7 @@ struct Masked {
   StageCounters counters;
 };
 
-Masked masked(const ShadedScene& scene, int positions = 256) {
+Masked masked(const ShadedScene& scene, int positions = 256, AlphaPlaces places = AlphaPlaces::all) {
   const std::vector<SamplePattern> patterns = cell_patterns(positions);
   const Tile tile = scene.frame_tile();
   BeamFragmentOptions options;
@@ -20,7 +20,7 @@ Masked masked(const ShadedScene& scene, int positions = 256) {
   Masked result;
   result.before = fragments_of(scene.triangles, tile, options);
   result.after = result.before;
-  alpha_mask({scene.shader, tile}, patterns, result.counters, result.after);
+  alpha_mask({scene.shader, tile}, patterns, places, result.counters, result.after);
   return result;
 }
 
