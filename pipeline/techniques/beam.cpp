@@ -95,9 +95,10 @@ TechniqueKind beam_kind() {
                        "shading point of a surface with a material: the centroid of what its triangle covers, of its "
                        "own positions, or of its positions in each quarter or sixteenth of the pixel; or as many of "
                        "these as light needs, with textures filtered over the positions"),
-                beside("at=adaptive", [&o] { return o.shading.at == OwnerPlace::adaptive; },
-                       number("tolerance", o.shading.tolerance, 0, 1000,
-                              "how far light may vary, times the share of the pixel, where it is shaded once")),
+                beside(
+                    "at=adaptive", [&o] { return o.shading.at == OwnerPlace::adaptive; },
+                    number("tolerance", o.shading.tolerance, 0, 1000,
+                           "how far light may vary, times the share of the pixel, where it is shaded once")),
                 choice("alpha", o.alpha,
                        {{"1", AlphaPlaces::one},
                         {"4", AlphaPlaces::quarters},

@@ -27,9 +27,7 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
 }
 
 // Places of a pixel on each axis, where its parts are looked up.
-int places_of(AlphaPlaces places) {
-  return places == AlphaPlaces::one ? 1 : places == AlphaPlaces::quarters ? 2 : 4;
-}
+int places_of(AlphaPlaces places) { return places == AlphaPlaces::one ? 1 : places == AlphaPlaces::quarters ? 2 : 4; }
 
 // Takes from fragments what their triangles' alpha lets through.
 class AlphaMask {

@@ -8,14 +8,14 @@ namespace beampipe {
 
 // How often each part ran.
 struct AlphaMaskWork {
-  std::uint64_t fragments = 0;  // that are not opaque
-  std::uint64_t covers = 0;     // fragments of cutouts that were looked up as a whole
-  std::uint64_t tests = 0;      // of positions or parts of a pixel, and of specks as a whole
-  std::uint64_t mixed = 0;      // of these, where texels are small: they pass in part
+  std::uint64_t fragments = 0;     // that are not opaque
+  std::uint64_t covers = 0;        // fragments of cutouts that were looked up as a whole
+  std::uint64_t tests = 0;         // of positions or parts of a pixel, and of specks as a whole
+  std::uint64_t mixed = 0;         // of these, where texels are small: they pass in part
   std::uint64_t ranked = 0;        // positions that were chosen by their ranks
   std::uint64_t interpolated = 0;  // positions whose alpha lies between four texels
-  std::uint64_t masks = 0;      // of fragments that have positions
-  std::uint64_t shares = 0;     // of positions that are left of a cutout
+  std::uint64_t masks = 0;         // of fragments that have positions
+  std::uint64_t shares = 0;        // of positions that are left of a cutout
   std::uint64_t dropped = 0;
   OperationCounts alphas{};  // what finding alpha costs: at each position that is tested, or once in a footprint
 };
@@ -43,7 +43,7 @@ inline OperationCounts test_cost() { return {.add = 3}; }
 inline OperationCounts mixed_cost() { return {.mul_add = 2, .add = 2 + 1 + 2 + 1 + 1, .special = 2, .convert = 2}; }
 
 // Four texels are compared with 0 and 1.
-inline OperationCounts cover_cost() { return {.bit = 6, .add = 2}; }
+inline OperationCounts cover_cost() { return {.add = 2, .bit = 6}; }
 
 // The place of a position between four texels, alpha there, and its comparison with the cutoff.
 inline OperationCounts patch_cost() { return {.mul_add = 4 + 3 + 1, .add = 2}; }

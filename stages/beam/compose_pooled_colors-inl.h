@@ -95,7 +95,8 @@ class OwnerColors {
 
   glm::vec3 shade_owner(std::uint32_t pixel, std::uint32_t number, const glm::vec2& centroid, const Mask& owned) {
     const std::uint32_t triangle = bin_.list[number];
-    if (bin_.shading.at == OwnerPlace::covered || bin_.shader.is_flat(triangle)) return shade(pixel, triangle, centroid);
+    if (bin_.shading.at == OwnerPlace::covered || bin_.shader.is_flat(triangle))
+      return shade(pixel, triangle, centroid);
     if (bin_.shading.at == OwnerPlace::visible) return shade_at_mean(pixel, triangle, owned, 1.0f);
     if (bin_.shading.at == OwnerPlace::adaptive) return shade_adaptively(pixel, triangle, owned);
     if (bin_.shading.at == OwnerPlace::quarters)
@@ -147,8 +148,7 @@ class OwnerColors {
   // May light vary by more in the area than is tolerated?
   bool varies(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
     work_.ranges += bin_.shader.work(triangle).range;
-    const float range =
-        bin_.shader.light_range(triangle, pixel, area.at.x, area.at.y, area.footprint, result_.texels);
+    const float range = bin_.shader.light_range(triangle, pixel, area.at.x, area.at.y, area.footprint, result_.texels);
     end_request(result_.texels);
     return range * (area.count / kPositions) > bin_.shading.tolerance;
   }
@@ -158,9 +158,7 @@ class OwnerColors {
     const Area whole = area_of(owned, Mask::filled(true), glm::vec2(0.5f), 1.0f);
     if (!varies(pixel, triangle, whole)) return shade(pixel, triangle, whole.at, whole.footprint);
     glm::vec3 sum(0.0f);
-    const auto add = [&](const Area& area) {
-      sum += area.count * shade(pixel, triangle, area.at, area.footprint);
-    };
+    const auto add = [&](const Area& area) { sum += area.count * shade(pixel, triangle, area.at, area.footprint); };
     const auto middle_of = [](std::size_t column, std::size_t row, float width) {
       return (glm::vec2(column, row) + 0.5f) * width;
     };

@@ -180,10 +180,11 @@ void charge(const PooledWork& work, StageCounters& counters) {
                                      of_votes = by_size(6, speck_votes_cost);
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
-                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_sides = sides(), of_pair = pair_cost(),
-                        of_merge = merge(Words), of_retirement = retirement(Words), of_bounds = plane_bounds_cost(),
-                        of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(),
-                        of_seen_speck = seen_speck(), of_added_speck = added_speck(), of_limit = limit_cost();
+                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_sides = sides(),
+                        of_pair = pair_cost(), of_merge = merge(Words), of_retirement = retirement(Words),
+                        of_bounds = plane_bounds_cost(), of_vertices = vertex_bounds_cost(),
+                        of_speck_test = speck_test_cost(), of_seen_speck = seen_speck(), of_added_speck = added_speck(),
+                        of_limit = limit_cost();
   static const UnitCost of_meeting = of_masks(Words, [](const CountedMask&mask) { is_met(mask, mask); }),
                         of_win = of_masks(Words, [](const CountedMask&mask) { with_won(mask, mask, mask); }),
                         of_claim = of_masks(Words, [](const CountedMask&mask) { claim_of(mask, mask, mask).none(); }),
@@ -191,7 +192,7 @@ void charge(const PooledWork& work, StageCounters& counters) {
   constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfFraction{.special = 1},
       kOfPosition{.add = 2},     // its x and y
       kOfSquares{.mul_add = 3},  // of these
-      kOfFarther{.add = 1};   // than the owners before it
+      kOfFarther{.add = 1};      // than the owners before it
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)

@@ -104,8 +104,9 @@ struct FinalSums {
 // Adds a surface that became final. `content`: of its slot; `final_positions`: those of surfaces that were added
 // before. Returns the area that it shows.
 template <class Float, class Int, class Bits>
-[[gnu::always_inline]] inline Float add_final(const SurfaceArea<Float>& surface, const Float (&color)[3], const Bits& content, const Float& positions,
-                const Float& final_positions, FinalSums<Int, Bits>& sums) {
+[[gnu::always_inline]] inline Float add_final(const SurfaceArea<Float>& surface, const Float (&color)[3],
+                                              const Bits& content, const Float& positions, const Float& final_positions,
+                                              FinalSums<Int, Bits>& sums) {
   const Float area = retired_area(surface, positions, {FixedSum::value(sums.area), final_positions});
   const Float counted = surface.visible / positions;
   sums.add(
@@ -212,7 +213,8 @@ struct Estimate {
 
 // The analytic estimate, moved towards the counted one as far as the tolerances demand.
 template <class Float>
-[[gnu::always_inline]] inline Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate<Float>& counted, Float positions) {
+[[gnu::always_inline]] inline Estimate<Float> limited_estimate(const Estimate<Float>& analytic,
+                                                               const Estimate<Float>& counted, Float positions) {
   const Float zero(0.0f), one(1.0f);
   const auto limited = [](Float x, Float middle, Float tolerance) {
     return lesser(greater(x, middle - tolerance), middle + tolerance);

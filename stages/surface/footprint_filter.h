@@ -38,7 +38,8 @@ inline FootprintSides footprint_sides(const TextureSlopes& slopes, const glm::ve
 inline constexpr float kTapDistance = 1.25f;
 
 // How much wider than the side of a footprint its taps lie so that they have the second moment of the side. The
-// texels of a level and the bilinear filter between them have blurred the image already. `side`: in texels of the level.
+// texels of a level and the bilinear filter between them have blurred the image already. `side`: in texels of the
+// level.
 inline float tap_spread(float side, float taps, std::size_t level) {
   if (taps == 1) return 0.0f;
   const float blur = 3.0f - std::ldexp(3.0f, -2 * static_cast<int>(level));  // 12 times its variance

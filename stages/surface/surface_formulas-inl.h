@@ -128,9 +128,7 @@ Real light_range(const Reflector<Real>& surface, const Real& turn, const Lightin
     const Real normal_half = dot(surface.normal, half_way);
     const Real sine = square_root(greater(one - normal_half * normal_half, zero));
     const Real nearest = greater(sine - turn, zero), farthest = lesser(sine + turn, one);
-    const auto density = [&](const Real& of_sine) {
-      return ggx_density(square_root(one - of_sine * of_sine), alpha2);
-    };
+    const auto density = [&](const Real& of_sine) { return ggx_density(square_root(one - of_sine * of_sine), alpha2); };
     const Real specular = (density(nearest) - density(farthest)) / smith_divisor(normal_light, normal_eye, alpha2);
     const Real reflectance = mirror + (one - mirror) * fresnel_weight(dot(surface.to_eye, half_way));
     const Real strongest(std::max(std::max(source.color.r, source.color.g), source.color.b));

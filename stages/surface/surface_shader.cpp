@@ -302,8 +302,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
     Work& work = works_[work_index(triangles.surfaces[i].material, shader)];
     if (work.input_bytes == 0)
       work = {material_cost(shader, rules.derivatives), light_cost(shader.material, frame.lighting),
-              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader),
-              range_cost(shader, frame.lighting), shader_input_bytes(shader)};
+              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader), range_cost(shader, frame.lighting),
+              shader_input_bytes(shader)};
   }
 }
 
@@ -339,8 +339,7 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
                                     weights);
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
-    return glm::vec4(
-        texture_alpha(*shader.material.base_texture, vector_of(at.uv), along_sides(at, footprint)));
+    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), along_sides(at, footprint)));
   };
   const float alpha =
       alpha_at(shader, {vertex(0).color[3], vertex(1).color[3], vertex(2).color[3]}, weights, texture_place, fetch);
@@ -357,8 +356,8 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, co
                      });
 }
 
-SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
-                                                     TexelRequests* texels) const {
+SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place,
+                                                     const Footprint& footprint, TexelRequests* texels) const {
   const float cutoff = alpha_cutoff(triangle);
   if (cutoff <= 0.0f) return {1.0f};
   const TestedAlpha* tested = nullptr;
@@ -387,25 +386,24 @@ SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, c
   if (cutoff <= 0.0f) return patch;
   const TestedAlpha* tested = nullptr;
   glm::vec4 shares;
-  const float factor = alpha_there(triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv,
-                                                                   const TextureSlopes& slopes) {
-    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
-    if (filter_plan(chain, texture, slopes).is_minified) {
-      const std::uint32_t material = triangles_.surfaces[triangle].material;
-      tested = &textures_->tested_alpha(material);
-      shares = filtered(tested->shares, for_areas(texture), uv, slopes,
-                        noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
-      return 1.0f;
-    }
-    patch.is_share = false;
-    const TexelQuad quad =
-        texels_around(chain, texture, 0, uv, noting(texels, texture.image, ColorSpace::srgb));
-    for (std::size_t i = 0; i < 4; ++i) patch.alphas[i] = quad.texels[i].a;
-    const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
-    patch.share = {quad.columns.share, quad.rows.share};
-    patch.right = slopes.dx * size / footprint.xx, patch.down = slopes.dy * size / footprint.yy;
-    return 1.0f;
-  });
+  const float factor = alpha_there(
+      triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+        const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+        if (filter_plan(chain, texture, slopes).is_minified) {
+          const std::uint32_t material = triangles_.surfaces[triangle].material;
+          tested = &textures_->tested_alpha(material);
+          shares = filtered(tested->shares, for_areas(texture), uv, slopes,
+                            noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+          return 1.0f;
+        }
+        patch.is_share = false;
+        const TexelQuad quad = texels_around(chain, texture, 0, uv, noting(texels, texture.image, ColorSpace::srgb));
+        for (std::size_t i = 0; i < 4; ++i) patch.alphas[i] = quad.texels[i].a;
+        const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
+        patch.share = {quad.columns.share, quad.rows.share};
+        patch.right = slopes.dx * size / footprint.xx, patch.down = slopes.dy * size / footprint.yy;
+        return 1.0f;
+      });
   if (tested) {
     patch.part = tested->share(shares, cutoff / factor);
   } else if (patch.is_share) {  // without a texture
@@ -421,20 +419,20 @@ CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPla
   if (textures_ == nullptr || textures_->alpha_test(material) == kNoAlphaTest || inputs_of(triangle).has_vertex_colors)
     return CutoutCover::mixed;
   CutoutCover cover = CutoutCover::mixed;
-  alpha_there(
-      triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
-        const TestedAlpha& tested = textures_->tested_alpha(material);
-        const CoveringLevel covering = covering_level(tested.shares, slopes);
-        if (!(covering.side <= 1)) return 1.0f;
-        const TexelQuad quad =
-            texels_around(tested.shares, texture, covering.level, uv,
-                          noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
-        const auto are_all = [&](float share) {
-          return std::ranges::all_of(quad.texels, [&](const glm::vec4& shares) { return shares[0] == share; });
-        };
-        cover = are_all(1.0f) ? CutoutCover::all : are_all(0.0f) ? CutoutCover::none : CutoutCover::mixed;
-        return 1.0f;
-      });
+  alpha_there(triangle, place, footprint,
+              [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+                const TestedAlpha& tested = textures_->tested_alpha(material);
+                const CoveringLevel covering = covering_level(tested.shares, slopes);
+                if (!(covering.side <= 1)) return 1.0f;
+                const TexelQuad quad =
+                    texels_around(tested.shares, texture, covering.level, uv,
+                                  noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+                const auto are_all = [&](float share) {
+                  return std::ranges::all_of(quad.texels, [&](const glm::vec4& shares) { return shares[0] == share; });
+                };
+                cover = are_all(1.0f) ? CutoutCover::all : are_all(0.0f) ? CutoutCover::none : CutoutCover::mixed;
+                return 1.0f;
+              });
   return cover;
 }
 
@@ -462,8 +460,7 @@ float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& pla
     const MipChain& chain = textures_->chain(texture.image, space);
     const auto& [uv, slopes] = points[texture.uv_set];
     const CoveringLevel covering = covering_level(chain, slopes);
-    const TexelQuad quad =
-        texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
+    const TexelQuad quad = texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
     const auto& all = quad.texels;
     const glm::vec4 least = glm::min(glm::min(all[0], all[1]), glm::min(all[2], all[3])),
                     most = glm::max(glm::max(all[0], all[1]), glm::max(all[2], all[3]));
@@ -590,8 +587,7 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
     const MipChain& chain = textures_->chain(texture.image, space);
     const auto& at = points[texture.uv_set];
     std::array<float, kMostInvocations> lods;
-    for (std::size_t i = 0; i < invocations.size(); ++i)
-      lods[i] = squared_footprint(at[i].slopes, chain.levels[0]);
+    for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = squared_footprint(at[i].slopes, chain.levels[0]);
     for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
     for (std::size_t i = 0; i < invocations.size(); ++i) {
       const FilterPlan plan = taps > 0 ? footprint_plan(chain, texture, at[i].slopes, taps)

@@ -84,8 +84,8 @@ class SurfaceShader {
     return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
   }
 
-  // Linear RGB. `footprint`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it is
-  // null.
+  // Linear RGB. `footprint`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it
+  // is null.
   glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
@@ -102,14 +102,16 @@ class SurfaceShader {
   }
 
   // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
-  void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TexelRequests& texels) const;
+  void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                  TexelRequests& texels) const;
 
   // Alpha at a place, whatever SurfaceColors says. `footprint`, `texels`: as above. 1 for opaque triangles.
-  float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TexelRequests* texels = nullptr) const;
+  float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+              TexelRequests* texels = nullptr) const;
 
   // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
-  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have. `footprint`,
-  // `texels`: as above.
+  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have.
+  // `footprint`, `texels`: as above.
   struct CutoutPart {
     float part = 0;
     bool is_share = false;  // from tested alpha
@@ -128,9 +130,9 @@ class SurfaceShader {
     bool is_share = false;
     float part = 0;  // of is_share
     // Else alpha at (x, y) pixels from the place is bilinear between those of four texels.
-    std::array<float, 4> alphas{};              // upper left, upper right, lower left, lower right
+    std::array<float, 4> alphas{};                   // upper left, upper right, lower left, lower right
     glm::vec2 share{0.0f}, right{0.0f}, down{0.0f};  // between the texels, and how it changes per pixel
-    float factor = 1;                           // of alpha
+    float factor = 1;                                // of alpha
 
     float alpha(float x, float y) const {
       const float s = share.x + x * right.x + y * down.x, t = share.y + x * right.y + y * down.y;
@@ -165,8 +167,8 @@ class SurfaceShader {
     return a == b || (is_flat(a) && is_flat(b) && flat_[a] == flat_[b]);
   }
 
-  // What an invocation costs: its operations, for the material, for light and for alpha alone, what others cost, and bytes of what it
-  // reads of the triangle and its vertices.
+  // What an invocation costs: its operations, for the material, for light and for alpha alone, what others cost, and
+  // bytes of what it reads of the triangle and its vertices.
   struct Work {
     OperationCounts material, light, alpha, range;  // range: of light_range()
     std::uint64_t input_bytes = 0;
@@ -192,7 +194,8 @@ class SurfaceShader {
     TextureSlopes slopes;
   };
 
-  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TexelRequests* texels) const;
+  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                   TexelRequests* texels) const;
 
   // Sets what the shader knows of a point without its textures, and where it reads them, by set of texture coordinates.
   // Null: nobody wants to know.
@@ -203,7 +206,8 @@ class SurfaceShader {
   void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels, PointInputs<float>* inputs) const;
   // Alpha, where texture_alpha(texture, uv, slopes) says that of the texture.
   template <class TextureAlpha>
-  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint, TextureAlpha&& texture_alpha) const;
+  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                    TextureAlpha&& texture_alpha) const;
   ShaderInputs inputs_of(std::uint32_t triangle) const;
   // Does the material pass through a G-buffer?
   bool is_stored(const Material& material) const {
@@ -252,7 +256,8 @@ class TileShader {
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
     return shader_->colors(invocations, texels);
   }
-  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint = {}) const {
+  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                            const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
     return shader_->color_and_alpha(triangle, place(pixel, u, v), footprint);
   }
@@ -266,8 +271,8 @@ class TileShader {
               TexelRequests* texels = nullptr) const {
     return shader_->alpha(triangle, place(pixel, u, v), footprint, texels);
   }
-  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
-                                        TexelRequests* texels = nullptr) const {
+  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                                        const Footprint& footprint, TexelRequests* texels = nullptr) const {
     return shader_->cutout_part(triangle, place(pixel, u, v), footprint, texels);
   }
   CutoutCover cutout_cover(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float side) const {

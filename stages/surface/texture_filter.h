@@ -136,8 +136,7 @@ glm::vec4 mean_of_steps(const MipChain& chain, const Texture& texture, const glm
   };
   const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
   return mixed_texels(
-      chain, 0,
-      parts(texels_around(u, image.width, texture.wrap_u), step_width.x * static_cast<float>(image.width)),
+      chain, 0, parts(texels_around(u, image.width, texture.wrap_u), step_width.x * static_cast<float>(image.width)),
       parts(texels_around(v, image.height, texture.wrap_v), step_width.y * static_cast<float>(image.height)), read);
 }
 

@@ -180,7 +180,8 @@ TEST(FootprintFilter, WhateverTheFootprintTheColorIsWithinTheImages) {
             const FilterPlan plan = footprint_plan(chain, {.magnify = magnify}, {{a, b}, {c, a}}, taps);
             ASSERT_LE(plan.texels(), 4u * static_cast<unsigned>(taps));
             const glm::vec4 found = filtered(chain, {}, {c, b}, plan, kIgnored);
-            for (int i = 0; i < 4; ++i) ASSERT_TRUE(found[i] >= 0 && found[i] <= 1.000001f) << a << ' ' << b << ' ' << c;
+            for (int i = 0; i < 4; ++i)
+              ASSERT_TRUE(found[i] >= 0 && found[i] <= 1.000001f) << a << ' ' << b << ' ' << c;
           }
 }
 
