@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "stages/beam/alpha_mask_cost.h"
 #include "stages/surface/opacity.h"
@@ -91,34 +92,50 @@ class AlphaMask {
     return sum / covered;
   }
 
+  // A part of the pixel: its middle and its patch.
+  struct Part {
+    float u, v;
+    std::optional<SurfaceShader::CutoutPatch> patch;
+  };
+
+  // Finds the part of a grid of so many parts on each axis that (u, v) lies in, and looks it up if nobody has.
+  const Part& look_up(const Fragment& fragment, float u, float v, float places, std::span<Part> parts) {
+    const float column = std::floor(u * places), row = std::floor(v * places);
+    Part& part = parts[static_cast<std::size_t>(row * places + column)];
+    if (part.patch) return part;
+    part.u = (column + 0.5f) / places, part.v = (row + 0.5f) / places;
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    ++work.tests;
+    part.patch = shader_.cutout_patch(fragment.triangle, fragment.pixel, part.u, part.v, 1 / places, texels_);
+    work.mixed += part.patch->is_share;
+    return part;
+  }
+
   // In each part of the pixel, one look-up tells of all positions: alpha between four texels, or the part that passes.
+  // Parts that pass in part are looked up in quarters.
   float test_parts(Fragment& fragment) {
     const OpacityRanks ranks = ranks_of(fragment);
     const auto covered = static_cast<float>(fragment.mask.count());
     const auto places = static_cast<float>(places_of(places_));
-    std::array<std::optional<SurfaceShader::CutoutPatch>, 16> patches;
+    std::array<Part, 16> parts;
+    std::array<Part, 64> quarters;
     WideMask left;
     float sum = 0;
     const auto test = [&](std::size_t position, float u, float v) {
-      const float column = std::floor(u * places), row = std::floor(v * places);
-      const float middle_u = (column + 0.5f) / places, middle_v = (row + 0.5f) / places;
-      std::optional<SurfaceShader::CutoutPatch>& patch = patches[static_cast<std::size_t>(row * places + column)];
-      if (!patch) {
-        work.alphas += shader_.work(fragment.triangle).alpha;
-        ++work.tests;
-        patch = shader_.cutout_patch(fragment.triangle, fragment.pixel, middle_u, middle_v, 1 / places, texels_);
-        work.mixed += patch->is_share;
-      }
-      if (patch->is_share) {
+      const Part* part = &look_up(fragment, u, v, places, parts);
+      if (part->patch->is_share && part->patch->part > 0 && part->patch->part < 1)
+        part = &look_up(fragment, u, v, 2 * places, quarters);
+      float passes;
+      if (part->patch->is_share) {
         ++work.ranked;
-        sum += patch->part;
-        if (ranks.takes(static_cast<std::uint32_t>(position), patch->part)) left.set(position);
+        passes = part->patch->part;
+        if (ranks.takes(static_cast<std::uint32_t>(position), passes)) left.set(position);
       } else {
         ++work.interpolated;
-        if (patch->alpha(u - middle_u, v - middle_v) < shader_.alpha_cutoff(fragment.triangle)) return;
-        sum += 1;
-        left.set(position);
+        passes = part->patch->alpha(u - part->u, v - part->v) >= shader_.alpha_cutoff(fragment.triangle) ? 1.0f : 0.0f;
+        if (passes > 0) left.set(position);
       }
+      sum += passes;
     };
     for_each_position(fragment.mask, patterns_, test, [] {});
     end_request(texels_);

@@ -392,7 +392,7 @@ SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, c
         if (filter_plan(chain, texture, slopes).is_minified) {
           const std::uint32_t material = triangles_.surfaces[triangle].material;
           tested = &textures_->tested_alpha(material);
-          shares = filtered(tested->shares, for_areas(texture), uv, slopes,
+          shares = filtered(tested->shares, texture, uv, footprint_plan(tested->shares, texture, slopes, 1),
                             noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
           return 1.0f;
         }
