@@ -35,7 +35,7 @@ inline FootprintSides footprint_sides(const TextureSlopes& slopes, const glm::ve
 }
 
 // The distance of taps in texels of their level, at most. Bilinear taps at this distance leave no gaps.
-inline constexpr float kTapDistance = 1.25f;
+inline constexpr float kTapDistance = 2.0f;
 
 // How much wider than the side of a footprint its taps lie so that they have the second moment of the side. The
 // texels of a level and the bilinear filter between them have blurred the image already. `side`: in texels of the
