@@ -14,7 +14,7 @@ struct BeamOptions {
   int pool = 40;        // bytes for each pixel of the bin
   int bin = kBinSize;   // pixels on each side
   OwnerShading shading = {};
-  AlphaPlaces alpha = AlphaPlaces::all;
+  AlphaPlaces alpha = AlphaPlaces::sixteenths;
 };
 
 Framebuffer beam_framebuffer(const BeamOptions& beam) {
@@ -65,7 +65,9 @@ TechniqueKind beam_kind() {
           "fragments with analytic coverage and a mask, taken near to far in each bin; a pixel has a word, and where "
           "surfaces share it a record in the bin's pool, until nothing nearer can hide them any more",
       .source = "ours, after Crassin et al. 2018",
-      .examples = {"beam", "beam:bits=128,pool=30,at=visible", "beam:bits=32,pool=16,bin=8,at=quarters"},
+      .examples = {"beam", "beam:bits=128,pool=30,at=visible", "beam:bits=32,pool=16,bin=8,at=quarters",
+                   "beam:at=covered,alpha=256,filter=sampler"},
+      .texture_taps = 16,
       .stressed = {"beam", "beam:bits=128,pool=0"},
       .make = make_from(
           BeamOptions{},
@@ -104,7 +106,7 @@ TechniqueKind beam_kind() {
                         {"4", AlphaPlaces::quarters},
                         {"16", AlphaPlaces::sixteenths},
                         {"256", AlphaPlaces::all}},
-                       "places of a pixel where the texture of a cutout is looked up; 256: at each position"),
+                       "places of a pixel where the texture of a cutout is looked up first; 256: at each position"),
                 choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
           },
           [](const BeamOptions& o) {

@@ -73,6 +73,7 @@ TechniqueKind beam_stream_kind() {
               "the pool is full",
           .source = "ours",
           .examples = {"beam:order=stream"},
+          .texture_taps = 16,
           .stressed = {"beam:order=stream"},
           .make = make_plain([] {
             return Technique{.framebuffer = stream_framebuffer(),

@@ -39,7 +39,7 @@ struct BeamFragmentOptions {
   // Use the depth range of the clipped triangle, as the published rules do. If not, use the wider depth bounds of the
   // pair.
   bool clipped_depth = true;
-  AlphaPlaces alpha = AlphaPlaces::all;
+  AlphaPlaces alpha = AlphaPlaces::sixteenths;
 };
 
 // Options for masks on a grid, without the depth range of the clipped triangle. `grid` must outlive the result.

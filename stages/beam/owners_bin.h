@@ -20,10 +20,10 @@ namespace beampipe {
 enum class OwnerPlace { covered, visible, quarters, sixteenths, adaptive };
 
 struct OwnerShading {
-  OwnerPlace at = OwnerPlace::covered;
-  // adaptive: a part of a pixel is shaded in quarters if its light may vary by more than this (SurfaceShader::
-  // light_range), times its share of the pixel.
-  float tolerance = 0.05f;
+  OwnerPlace at = OwnerPlace::adaptive;
+  // adaptive: a part of a pixel is shaded in quarters if its light may vary by more than this
+  // (SurfaceShader::light_range), times its share of the pixel.
+  float tolerance = 0.2f;
 };
 
 // What a bin has in common for all its fragments.
