@@ -396,7 +396,7 @@ SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, c
                             noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
           return 1.0f;
         }
-        patch.is_share = false;
+        patch.is_share = false, patch.is_nearest = texture.magnify == Filter::nearest;
         const TexelQuad quad = texels_around(chain, texture, 0, uv, noting(texels, texture.image, ColorSpace::srgb));
         for (std::size_t i = 0; i < 4; ++i) patch.alphas[i] = quad.texels[i].a;
         const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);

@@ -129,15 +129,18 @@ class SurfaceShader {
   struct CutoutPatch {
     bool is_share = false;
     float part = 0;  // of is_share
-    // Else alpha at (x, y) pixels from the place is bilinear between those of four texels.
-    std::array<float, 4> alphas{};                   // upper left, upper right, lower left, lower right
+    // Else alpha at (x, y) pixels from the place lies between those of four texels, or is that of the nearest one.
+    std::array<float, 4> alphas{};  // upper left, upper right, lower left, lower right
+    bool is_nearest = false;
     glm::vec2 share{0.0f}, right{0.0f}, down{0.0f};  // between the texels, and how it changes per pixel
     float factor = 1;                                // of alpha
 
     float alpha(float x, float y) const {
-      const float s = share.x + x * right.x + y * down.x, t = share.y + x * right.y + y * down.y;
-      const float upper = alphas[0] + s * (alphas[1] - alphas[0]), lower = alphas[2] + s * (alphas[3] - alphas[2]);
-      return factor * (upper + t * (lower - upper));
+      glm::vec2 at = share + x * right + y * down;
+      if (is_nearest) at = {at.x < 0.5f ? 0.0f : 1.0f, at.y < 0.5f ? 0.0f : 1.0f};
+      const float upper = alphas[0] + at.x * (alphas[1] - alphas[0]),
+                  lower = alphas[2] + at.x * (alphas[3] - alphas[2]);
+      return factor * (upper + at.y * (lower - upper));
     }
   };
   CutoutPatch cutout_patch(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,

@@ -24,6 +24,9 @@ Masked masked(const ShadedScene& scene, int positions = 256, AlphaPlaces places 
   return result;
 }
 
+constexpr AlphaPlaces kAllPlaces[] = {AlphaPlaces::one, AlphaPlaces::quarters, AlphaPlaces::sixteenths,
+                                      AlphaPlaces::all};
+
 double area(const std::vector<Fragment>& fragments) {
   double sum = 0;
   for (const Fragment& fragment : fragments) sum += fragment.alpha;
@@ -56,16 +59,66 @@ TEST(AlphaMask, ACutoutLeavesWhereTheTextureIsOpaque) {
   Material material = textured_material(scene.add_image(image), AlphaMode::mask);
   material.base_texture->wrap_u = Wrap::clamp;
   scene.add_rectangle(0, 0, 8, 8, 0.5, material);
-  for (const Filter filter : {Filter::nearest, Filter::linear}) {
-    scene.trace.materials[0].base_texture->magnify = filter;
-    const Masked found = masked(ShadedScene(scene.trace));
-    EXPECT_NEAR(area(found.after), 32, 1e-4);
-    EXPECT_EQ(positions(found.after), 32 * 256);
-    for (const Fragment& fragment : found.after) EXPECT_LT(fragment.pixel % 8, 4u);
+  for (const AlphaPlaces places : kAllPlaces) {
+    scene.trace.materials[0].alpha_cutoff = 0.5f;
+    for (const Filter filter : {Filter::nearest, Filter::linear}) {
+      scene.trace.materials[0].base_texture->magnify = filter;
+      const Masked found = masked(ShadedScene(scene.trace), 256, places);
+      EXPECT_NEAR(area(found.after), 32, 1e-4);
+      EXPECT_EQ(positions(found.after), 32 * 256);
+      for (const Fragment& fragment : found.after) EXPECT_LT(fragment.pixel % 8, 4u);
+    }
+    // The cutoff moves the border of the linear filter: alpha falls from 1 at u = 1/4 to 0 at u = 3/4.
+    scene.trace.materials[0].alpha_cutoff = 0.75f;
+    EXPECT_NEAR(area(masked(ShadedScene(scene.trace), 256, places).after), 8 * 8 * 0.375, 1e-4);
   }
-  // The cutoff moves the border of the linear filter: alpha falls from 1 at u = 1/4 to 0 at u = 3/4.
-  scene.trace.materials[0].alpha_cutoff = 0.75f;
-  EXPECT_NEAR(area(masked(ShadedScene(scene.trace)).after), 8 * 8 * 0.375, 1e-4);
+}
+
+// Texels of 1 to 3 pixels with any alphas: between four of them, alpha at a position is the same from every place,
+// where these lie between the same texels.
+TEST(AlphaMask, PlacesTellOfAllPositionsAroundThem) {
+  Random random(3);
+  for (const double pixels : {8.0, 24.0}) {
+    SurfaceTrace scene(24, 24);
+    scene.add_rectangle(0, 0, pixels, pixels, 0.5,
+                        textured_material(scene.add_image(random_image(random, 8, 8)), AlphaMode::mask));
+    const ShadedScene shaded(scene.trace);
+    const Masked all = masked(shaded);
+    const auto differing = [&](AlphaPlaces places) {
+      const Masked some = masked(shaded, 256, places);
+      std::map<std::pair<std::uint32_t, std::uint32_t>, WideMask> masks;
+      for (const Fragment& fragment : some.after) masks[{fragment.pixel, fragment.triangle}] = fragment.mask;
+      double sum = 0;
+      for (const Fragment& fragment : all.after) {
+        const WideMask& other = masks[{fragment.pixel, fragment.triangle}];
+        sum += without(fragment.mask, other).count() + without(other, fragment.mask).count();
+      }
+      return sum / positions(all.after);
+    };
+    const double sixteenths = differing(AlphaPlaces::sixteenths), one = differing(AlphaPlaces::one);
+    EXPECT_LT(sixteenths, 0.05) << pixels;
+    EXPECT_LE(sixteenths, one) << pixels;
+    EXPECT_LT(one, 0.4) << pixels;
+  }
+}
+
+// Half of the pixels lie in texels that pass, and half in others: a look-up of four texels for each pixel and triangle.
+TEST(AlphaMask, PixelsThatAreKnownAsAWholeAreLookedUpOnce) {
+  SurfaceTrace scene(64, 64);
+  TextureImage image = filled_image(64, 64, {255, 255, 255, 255});
+  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = i % 64 < 32 ? 255 : 0;
+  scene.add_rectangle(0, 0, 64, 64, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+  scene.trace.materials[0].base_texture->wrap_u = Wrap::clamp;
+  const ShadedScene shaded(scene.trace);
+  const Masked found = masked(shaded);
+  EXPECT_NEAR(area(found.after), 32 * 64, 1e-3);
+  TexelRequests texels(nullptr);
+  StageCounters counters;
+  std::vector<Fragment> fragments = found.before;
+  std::erase_if(fragments,
+                [](const Fragment& fragment) { return std::abs(static_cast<int>(fragment.pixel % 64) - 32) < 4; });
+  alpha_mask({shaded.shader, shaded.frame_tile()}, cell_patterns(256), AlphaPlaces::all, counters, fragments, &texels);
+  EXPECT_EQ(texels.texels(), 4 * counters.items_in);
 }
 
 // Texels far smaller than the distance of positions, every other one opaque: half of everything is left.
@@ -74,12 +127,14 @@ TEST(AlphaMask, FineTexelsLeaveTheirMean) {
   TextureImage image = filled_image(1024, 1024, {255, 255, 255, 0});
   for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = (i + i / 1024) % 2 ? 255 : 0;
   scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
-  const Masked found = masked(ShadedScene(scene.trace));
-  EXPECT_NEAR(area(found.after), 32, 0.15);                // 128 of 255 codes, and filtered borders
-  EXPECT_NEAR(positions(found.after), 32 * 256, 64 + 32);  // one position per pixel, and the same
-  for (const Fragment& fragment : found.after) {
-    if (fragment.pixel % 9 != 0) {  // the triangle covers the whole pixel
-      EXPECT_NEAR(fragment.alpha, fragment.mask.count() / 256.0, 0.01);
+  for (const AlphaPlaces places : kAllPlaces) {
+    const Masked found = masked(ShadedScene(scene.trace), 256, places);
+    EXPECT_NEAR(area(found.after), 32, 0.15);                // 128 of 255 codes, and filtered borders
+    EXPECT_NEAR(positions(found.after), 32 * 256, 64 + 32);  // one position per pixel, and the same
+    for (const Fragment& fragment : found.after) {
+      if (fragment.pixel % 9 != 0) {  // the triangle covers the whole pixel
+        EXPECT_NEAR(fragment.alpha, fragment.mask.count() / 256.0, 0.01);
+      }
     }
   }
 }
