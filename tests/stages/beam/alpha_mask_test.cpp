@@ -1,6 +1,8 @@
 // Cutouts and translucency of beams: how much area and which positions are left.
 #include "stages/beam/alpha_mask.h"
 
+#include <map>
+
 #include "stages/surface/opacity.h"
 #include "tests/stages/beam_pixels.h"
 #include "tests/stages/surface_scene.h"
@@ -251,16 +253,18 @@ TEST(AlphaMask, AFragmentWithoutPositionsIsASpeck) {
   EXPECT_GT(specks, 1000u);
 }
 
-// One pixel of a translucent rectangle with a texture: an alpha and 256 ranks. One of a cutout: 256 alphas and ranks.
+// One pixel of a translucent rectangle with a texture: an alpha and 256 ranks. One of a cutout: a look-up of the whole
+// pixel, and 256 alphas and ranks.
 TEST(AlphaMask, CountsItsWork) {
   for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
     SurfaceTrace scene(1, 1);
-    scene.add_rectangle(-20, -1, 2, 2, 0.5,
-                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), mode));
+    TextureImage image = filled_image(2, 2, {9, 9, 9, 200});
+    image.texels[0].a = 0;  // one of the four texels that are looked up
+    scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), mode));
     const ShadedScene shaded(scene.trace);
     const Masked found = masked(shaded);
     ASSERT_EQ(found.before.size(), 1u);
-    const std::uint64_t alphas = mode == AlphaMode::mask ? 256 : 1;
+    const std::uint64_t alphas = mode == AlphaMode::mask ? 1 + 256 : 1;
     EXPECT_EQ(found.counters.items_in, 1u);
     EXPECT_EQ(found.counters.items_out, 1u);
     EXPECT_EQ(found.counters.bytes_read, 4 * 8 + 2u + 4);  // the mask, the area as fp16, and the number of the sheet
@@ -272,8 +276,10 @@ TEST(AlphaMask, CountsItsWork) {
     // texture coordinates (2, 4 each) and four slopes of them (2, 3 each); the factor.
     // Besides: eight products and four sums that make the pixel's flip, and two products; the area's factor.
     EXPECT_EQ(found.counters.ops.mul_add, alphas * (8 + 10 + 2 * 2 + 4 * 2 + 1) + 8 + 2 + 1);
-    // A rank is moved and compared; in a cutout alpha is compared and selected, and added.
-    EXPECT_EQ(found.counters.ops.add, alphas * (10 + 6 + 2 * 4 + 4 * 3) + 4 + 256 * (mode == AlphaMode::mask ? 5 : 2));
+    // A rank is moved and compared; in a cutout alpha is compared and selected, and added, and the four texels of the
+    // pixel are compared with 0 and 1.
+    EXPECT_EQ(found.counters.ops.add,
+              alphas * (10 + 6 + 2 * 4 + 4 * 3) + 4 + (mode == AlphaMode::mask ? 256 * 5 + 2 : 256 * 2));
     EXPECT_EQ(found.counters.ops.special, alphas * 2 + (mode == AlphaMode::mask));
   }
 }
@@ -297,8 +303,9 @@ TEST(AlphaMask, SpecksReadNoSheet) {
 TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
   const auto counters = [](float scale) {
     SurfaceTrace scene(1, 1);
-    scene.add_rectangle(-20, -1, 2, 2, 0.5,
-                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), AlphaMode::mask));
+    TextureImage image = filled_image(2, 2, {9, 9, 9, 200});
+    image.texels[0].a = 0;
+    scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
     for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= scale;
     const Masked found = masked(ShadedScene(scene.trace));
     EXPECT_EQ(found.after.size(), 1u);
