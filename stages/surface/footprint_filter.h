@@ -66,7 +66,7 @@ inline FilterPlan footprint_plan(const MipChain& chain, const Texture& texture, 
   const FootprintSides sides = footprint_sides(slopes, {chain.levels[0].width, chain.levels[0].height});
   FilterPlan plan{.filter = texture.magnify};
   constexpr float kFarthest = 1 << 24;  // in texels; beyond it, and for what is no number, the last level
-  if (!(std::max(sides.length, sides.width) < kFarthest)) {
+  if (!(sides.length < kFarthest && sides.width < kFarthest)) {
     plan.is_minified = true, plan.filter = Filter::linear, plan.level = chain.levels.size() - 1;
     return plan;
   }

@@ -75,13 +75,13 @@ TEST(CounterRegistry, EveryCounterMovesWhereItIsListed) {
 
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
-  const Trace trace = test_trace();
-  for (const std::string& spec : example_specs()) {
-    History history;
-    for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
-      for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters)
-        for (const float value : values) found[name] += value;
-  }
+  for (const Trace& trace : {test_trace(), mixed_trace()})
+    for (const std::string& spec : example_specs()) {
+      History history;
+      for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
+        for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters)
+          for (const float value : values) found[name] += value;
+    }
   for (const PixelCounterInfo& counter : pixel_counters()) {
     EXPECT_GT(found[counter.name], 0.0f) << counter.name;
     found.erase(counter.name);

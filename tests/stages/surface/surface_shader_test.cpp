@@ -466,11 +466,11 @@ TEST(SurfaceShaderCost, OfAnUnlitTexture) {
   EXPECT_EQ(analytic.shader.work(0).input_bytes, kSurfaceBytes + 3 * 2 * 4);
 }
 
-// A rectangle whose normals turn by `turn` to each side, in front of a light beside the eye.
+// A rectangle whose normals turn by `turn` to each side, in front of a light beside the eye, which sees its back.
 SurfaceTrace bent(float turn, const Material& material) {
   SurfaceTrace scene(16, 16);
   scene.add_rectangle(0, 0, 16, 16, 0.5, material);
-  const glm::vec3 left(-std::sin(turn), 0, -std::cos(turn)), right(std::sin(turn), 0, -std::cos(turn));
+  const glm::vec3 left(std::sin(turn), 0, std::cos(turn)), right(-std::sin(turn), 0, std::cos(turn));
   scene.mesh().normals = {left, right, right, left};
   scene.frame().lighting = {{{glm::normalize(glm::vec3(0.3f, 0.1f, 1))}}, std::nullopt};
   return scene;
