@@ -2,8 +2,8 @@
 #include "stages/cost/counter_registry.h"
 
 #include "pipeline/technique_table.h"
-#include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 
 namespace beampipe::counter_registry_test {
@@ -73,9 +73,16 @@ TEST(CounterRegistry, EveryCounterMovesWhereItIsListed) {
   }
 }
 
+// A surface with a material.
+Trace lit_trace() {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0.5, Material{});
+  return scene.trace;
+}
+
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
-  for (const Trace& trace : {test_trace(), mixed_trace()})
+  for (const Trace& trace : {test_trace(), lit_trace()})
     for (const std::string& spec : example_specs()) {
       History history;
       for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
