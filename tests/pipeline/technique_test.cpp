@@ -109,7 +109,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"double must be none, stencil or saturate", {"acaa:8,double=yes"}},
       {"N of visibility:N must be 1, 2, 4, 8 or 16", {"visibility:3", "visibility:"}},
       {"'4' is there twice", {"visibility:4,4"}},
-      {"visibility:N has no option '8'; it has N and filter", {"visibility:4,8"}},
+      {"visibility:N has no option '8'; it has filter", {"visibility:4,8"}},
       {"shading must be visibility, deferred or forward", {"taa:8,shading=backward"}},
       {taa_rates, {"taa", "taa:32"}},
       {"blend must be a number from 0.001 to 1",
