@@ -23,7 +23,7 @@ struct OwnerShading {
   OwnerPlace at = OwnerPlace::adaptive;
   // adaptive: a part of a pixel is shaded in quarters if its light may vary by more than this
   // (SurfaceShader::light_range), times its share of the pixel.
-  float tolerance = 0.2f;
+  float tolerance = 0.1f;
 };
 
 // What a bin has in common for all its fragments.

@@ -28,6 +28,11 @@ Triple<Real> unit(const Triple<Real>& a) {
 }
 
 template <class Real>
+Real length(const Triple<Real>& a) {
+  return square_root(dot(a, a));
+}
+
+template <class Real>
 Triple<Real> triple(const glm::vec3& v) {
   return {Real(v.x), Real(v.y), Real(v.z)};
 }
@@ -108,27 +113,58 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
   return light;
 }
 
-// How far reflected light may vary, about, around a point where the normal turns by up to `turn` against light and eye,
-// in radians to each side: a highlight from its brightest to its darkest there, and the bend of diffuse light, whose
-// slope does not change a mean. Of the strongest channel; ambient light varies little.
+// How the directions at a point turn within an area around it: the normal by up to `right` and `down`, towards both
+// sides of the area, and all of them by up to `around`, in radians, in any direction.
 template <class Real>
-Real light_range(const Reflector<Real>& surface, const Real& turn, const Lighting& lighting) {
+struct Turn {
+  Triple<Real> right, down;
+  Real around;
+};
+
+// The shortest vector, about, of from + s * right + t * down with s and t between -1 and 1.
+template <class Real>
+Triple<Real> nearest_of(const Triple<Real>& from, const Turn<Real>& turn) {
+  const Real one(1.0f), tiny(1e-12f);
+  Triple<Real> nearest = from;
+  Real s(0.0f), t(0.0f);
+  const auto move = [&](const Triple<Real>& along, Real& at) {
+    const Real wanted = at - dot(nearest, along) / greater(dot(along, along), tiny);
+    const Real next = greater(lesser(wanted, one), Real(-1.0f));
+    nearest = sum(nearest, scaled(along, next - at));
+    at = next;
+  };
+  move(turn.right, s);
+  move(turn.down, t);
+  move(turn.right, s);
+  return nearest;
+}
+
+// How far reflected light may vary, about, around a point where directions turn: a highlight from its brightest to its
+// darkest there, and the bend of diffuse light, whose slope does not change a mean. Of the strongest channel; ambient
+// light varies little.
+template <class Real>
+Real light_range(const Reflector<Real>& surface, const Turn<Real>& turn, const Lighting& lighting) {
   const Real zero(0.0f), one(1.0f);
   const Real roughness = greater(surface.roughness, Real(kLeastRoughness));
   const Real alpha = roughness * roughness, alpha2 = alpha * alpha;
   const Real normal_eye = greater(dot(surface.normal, surface.to_eye), Real(1e-3f));
   const Real base = greater(greater(surface.base[0], surface.base[1]), surface.base[2]);
   const Real mirror = lesser(mixed(Real(kDielectricReflectance), base, surface.metallic), one);
-  const Real bend = base * (one - surface.metallic) * (Real(0.25f) * turn * turn);
+  const Real all = length(turn.right) + length(turn.down) + turn.around;
+  const Real bend = base * (one - surface.metallic) * (Real(0.25f) * all * all);
   Real range = zero;
   for (const Light& source : lighting.lights) {
     const Triple<Real> to_light = triple<Real>(-source.direction);
     const Triple<Real> half_way = unit(sum(to_light, surface.to_eye));
-    const Real normal_light = lesser(greater(dot(surface.normal, to_light) + turn, zero), one);
+    const Real normal_light = lesser(greater(dot(surface.normal, to_light) + all, zero), one);
     const Real normal_half = dot(surface.normal, half_way);
-    const Real sine = square_root(greater(one - normal_half * normal_half, zero));
-    const Real nearest = greater(sine - turn, zero), farthest = lesser(sine + turn, one);
-    const auto density = [&](const Real& of_sine) { return ggx_density(square_root(one - of_sine * of_sine), alpha2); };
+    // From the direction half-way to the normal; its length is the sine of the angle between them.
+    const Triple<Real> away = sum(surface.normal, scaled(half_way, zero - normal_half));
+    const Real nearest = greater(length(nearest_of(away, turn)) - turn.around, zero);
+    const Real farthest = lesser(length(away) + all, one);
+    const auto density = [&](const Real& sine) {
+      return ggx_density(square_root(greater(one - sine * sine, zero)), alpha2);
+    };
     const Real specular = (density(nearest) - density(farthest)) / smith_divisor(normal_light, normal_eye, alpha2);
     const Real reflectance = mirror + (one - mirror) * fresnel_weight(dot(surface.to_eye, half_way));
     const Real strongest(std::max(std::max(source.color.r, source.color.g), source.color.b));
@@ -137,12 +173,10 @@ Real light_range(const Reflector<Real>& surface, const Real& turn, const Lightin
   return range;
 }
 
-// How far two directions of any length turn away from a third one, both together.
+// How far a direction is from another one; both have any length.
 template <class Real>
-Real turn_between(const Triple<Real>& middle, const Triple<Real>& a, const Triple<Real>& b) {
-  const Triple<Real> from = scaled(unit(middle), Real(-1.0f));
-  const Triple<Real> to_a = sum(unit(a), from), to_b = sum(unit(b), from);
-  return square_root(dot(to_a, to_a)) + square_root(dot(to_b, to_b));
+Triple<Real> turned(const Triple<Real>& from, const Triple<Real>& to) {
+  return sum(unit(to), scaled(unit(from), Real(-1.0f)));
 }
 
 // Roughness with what normals differ within the texel: the mean of unit vectors is the shorter the more they differ.

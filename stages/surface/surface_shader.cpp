@@ -197,9 +197,11 @@ OperationCounts range_cost(const ShaderInputs& shader, const Lighting& lighting)
         for (int i = 0; i < 12; ++i) static_cast<void>(greater(one, lesser(one, one)) + one);
       });
     }
-    if (!shader.has_own_normal) turn_between(vector, vector, vector);
-    turn_between(vector, vector, vector);
-    light_range(material_of(shader, inputs).reflector, one + one + one, lighting);
+    const auto turns = [&] { return Turn<Real>{turned(vector, vector), turned(vector, vector), one}; };
+    if (!shader.has_own_normal) turns();
+    const Turn<Real> of_eye = turns();
+    const Real around = one * (length(of_eye.right) + length(of_eye.down)) + one;
+    light_range(material_of(shader, inputs).reflector, Turn<Real>{vector, vector, around}, lighting);
   });
 }
 
@@ -451,8 +453,13 @@ float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& pla
   PointInputs<float> middle = inputs_at(0, 0, {&points[0], &points[1]});
   const PointInputs<float> right = inputs_at(0.5f * footprint.xx, 0.5f * footprint.xy, {}),
                            below = inputs_at(0, 0.5f * footprint.yy, {});
-  float turn = 0.5f * turn_between(middle.to_eye, right.to_eye, below.to_eye);  // of the half-way vector
-  if (!shader.has_own_normal) turn += turn_between(middle.normal, right.normal, below.normal);
+  Turn<float> turn{};
+  turn.around = 0.5f * (length(turned(middle.to_eye, right.to_eye)) +
+                        length(turned(middle.to_eye, below.to_eye)));  // of the direction half-way
+  if (!shader.has_own_normal) {
+    turn.right = scaled(turned(middle.normal, right.normal), middle.facing);
+    turn.down = scaled(turned(middle.normal, below.normal), middle.facing);
+  }
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
     middle.*texel = {1.0f, 1.0f, 1.0f, 1.0f};
     if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
@@ -472,10 +479,10 @@ float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& pla
     // What four texels span, they span over a length of one texel. A texel of several is the shorter the more they
     // differ.
     const glm::vec2 span = (glm::vec2(most) - glm::vec2(least)) * std::min(covering.side, 1.0f);
-    turn += std::abs(shader.material.normal_scale) * glm::length(span);
+    turn.around += std::abs(shader.material.normal_scale) * glm::length(span);
     if (covering.level > 0) {
-      const float length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
-      turn += std::sqrt(2.0f * (1.0f - length));
+      const float mean_length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
+      turn.around += std::sqrt(2.0f * (1.0f - mean_length));
     }
     middle.*texel = {mean.r, mean.g, mean.b, 0.0f};
   });
