@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "simd/sample_pattern.h"
-#include "stages/beam/beam_fragment.h"
 #include "stages/cost/counters.h"
+#include "stages/data/alpha_places.h"
 #include "stages/data/fragment.h"
 #include "stages/surface/surface_shader.h"
 

@@ -12,6 +12,7 @@
 #include "simd/position_mask.h"
 #include "simd/sample_mask.h"
 #include "stages/cost/counters.h"
+#include "stages/data/alpha_places.h"
 #include "stages/data/fragment.h"
 #include "stages/data/pair.h"
 #include "stages/data/setup_triangle.h"
@@ -22,9 +23,6 @@ namespace beampipe {
 // Where masks come from: the 64 x 64 table of the published rules, edge tests at arbitrary positions, edge tests at the
 // positions of a grid; or there are no masks.
 enum class MaskSource { table, exact, grid, none };
-
-// Where in a pixel the texture of a cutout is looked up (stages/beam/alpha_mask.h).
-enum class AlphaPlaces { one, quarters, sixteenths, all };
 
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
@@ -39,7 +37,7 @@ struct BeamFragmentOptions {
   // Use the depth range of the clipped triangle, as the published rules do. If not, use the wider depth bounds of the
   // pair.
   bool clipped_depth = true;
-  AlphaPlaces alpha = AlphaPlaces::sixteenths;
+  AlphaPlaces alpha = AlphaPlaces::sixteenths;  // for the stage that takes alpha away
 };
 
 // Options for masks on a grid, without the depth range of the clipped triangle. `grid` must outlive the result.
