@@ -17,7 +17,7 @@ import sys
 from measure import print_head, print_row, results
 
 WIDTH, HEIGHT, SLATS, LENGTH, THICKNESS = 320, 180, 60, 150, 4
-SPECS = ["msaa:8", "msaa:8,at=centroid", "acaa:8", "beam", "beam:at=visible", "beam:at=quarters", "msaa:256"]
+SPECS = ["msaa:8", "msaa:8,at=centroid", "acaa:8", "beam", "beam:at=covered", "beam:at=quarters", "msaa:256"]
 
 
 def slats(seed):

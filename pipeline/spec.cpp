@@ -33,7 +33,6 @@ void set_item(const Spec& spec, const Spec::Item& item, const std::string& title
     std::vector<std::string> keys;
     for (const SpecOption& each : options)
       if (each.form != SpecOption::Form::samples) keys.push_back(each.key);
-    if (keys.empty()) spec.fail(title + " has no options");
     spec.fail(title + " has no option '" + std::string(item.key) + "'" + did_you_mean(item.key, keys) + "; it has " +
               list_of(keys, "and"));
   }

@@ -45,11 +45,18 @@ Technique parse_technique(std::string_view text) {
   const Spec spec(text);
   const std::vector<const TechniqueKind*> kinds = kinds_of(spec);
   const TechniqueKind& kind = chosen_kind(spec, kinds);
+  int taps = kind.texture_taps;
   Technique technique = kind.make([&](SpecOptions options) {
     if (kinds.size() > 1) options.push_back(variant_option(kind.variant, kinds));
+    options.push_back(filter_option(taps));
     set_options(spec, title_of(kind), options);
   });
   technique.spec = text;
+  technique.renderer = [render = std::move(technique.renderer), taps](const Trace& trace, std::size_t frame,
+                                                                      FrameInput run, const FrameSinks& sinks) {
+    run.texture_taps = taps;
+    return render(trace, frame, run, sinks);
+  };
   return technique;
 }
 

@@ -42,6 +42,7 @@ struct FrameInput {
   // The trace's textures, which frames share; null: the frame prepares its own.
   const TextureSet* textures = nullptr;
   SurfaceColors colors = SurfaceColors::by_place;
+  int texture_taps = 0;  // as ShadingRules::texture_taps
   // If not null, only the bins that hold one of these pixels are rendered; the rest of the picture is black.
   const std::vector<PixelAddress>* pixels = nullptr;
   // If not null, it is read before every bin, from any thread; once it is true, `render` throws Cancelled.

@@ -43,6 +43,13 @@ const std::vector<TechniqueKind>& built_in_kinds() {
 // Weak, so that the linker prefers a program's own.
 [[gnu::weak]] const std::vector<TechniqueKind>& technique_kinds() { return built_in_kinds(); }
 
+SpecOption filter_option(int& texture_taps) {
+  return choice(
+      "filter", texture_taps, {{"sampler", 0}, {"1", 1}, {"4", 4}, {"16", 16}},
+      "textures: filtered as their samplers ask for, or the mean over the footprint by up to so many taps; beam in "
+      "all orders has 16");
+}
+
 std::vector<std::string> example_specs() { return specs_of_all(&TechniqueKind::examples); }
 
 std::vector<std::string> stressed_specs() { return specs_of_all(&TechniqueKind::stressed); }

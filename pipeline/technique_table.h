@@ -26,6 +26,7 @@ struct TechniqueKind {
   // Specs that together take every way through its code. What is asked of every technique is asked of these, in tests,
   // digests and docs.
   std::vector<std::string> examples;
+  int texture_taps = 0;                    // ShadingRules::texture_taps, unless the spec says otherwise
   std::vector<std::string> stressed = {};  // specs that `beampipe stress` compares with exact arithmetic
   // Identifies code outside the program that makes the pictures, so that results of other code are not taken for its
   // own; empty: there is none.
@@ -41,6 +42,9 @@ const std::vector<TechniqueKind>& built_in_kinds();
 // Those that specs can name: the built-in ones, unless a program that has techniques of its own defines this function
 // itself (docs/manual.md).
 const std::vector<TechniqueKind>& technique_kinds();
+
+// The option that every technique has.
+SpecOption filter_option(int& texture_taps);
 
 // The specs of all techniques.
 std::vector<std::string> example_specs();

@@ -88,6 +88,10 @@ std::string technique_help() {
       help << wrapped(usage + help_of(option), kHelpWidth, usage.size()) << '\n';
     }
   }
+  int taps = 0;
+  const SpecOption filter = filter_option(taps);
+  const std::string usage = "      " + filter.usage + "  ";
+  help << "\n  all techniques\n" << wrapped(usage + help_of(filter), kHelpWidth, usage.size()) << '\n';
   return help.str();
 }
 
@@ -107,6 +111,10 @@ std::string technique_tables() {
               << (option.words.empty() ? "" : bytes_by_word(kind, i, option.words)) << " |\n";
     }
   }
+  int taps = 0;
+  const SpecOption filter = filter_option(taps);
+  options << "| all | " << as_code(filter.usage) << " | " << filter.help << " | " << as_code(filter.fallback)
+          << " |  |\n";
   return tables.str() + '\n' + options.str();
 }
 

@@ -73,6 +73,22 @@ PositionSums position_sums_kernel(const SamplePattern* patterns, std::size_t wor
   return {hn::GetLane(hn::SumOfLanes(DI(), x)), hn::GetLane(hn::SumOfLanes(DI(), y))};
 }
 
+PositionSquares position_squares_kernel(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks) {
+  using DI = hn::RebindToSigned<D>;
+  auto xx = hn::Zero(DI()), xy = hn::Zero(DI()), yy = hn::Zero(DI());
+  for (std::size_t w = 0; w < words; ++w) {
+    if (masks[w] == 0) continue;
+    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
+      const auto in_mask = hn::RebindMask(DI(), mask_of_bits<D>(masks[w], s).raw);
+      const auto x = hn::IfThenElseZero(in_mask, hn::Load(DI(), patterns[w].x.data() + s));
+      const auto y = hn::IfThenElseZero(in_mask, hn::Load(DI(), patterns[w].y.data() + s));
+      xx = hn::Add(xx, hn::Mul(x, x)), xy = hn::Add(xy, hn::Mul(x, y)), yy = hn::Add(yy, hn::Mul(y, y));
+    }
+  }
+  return {hn::GetLane(hn::SumOfLanes(DI(), xx)), hn::GetLane(hn::SumOfLanes(DI(), xy)),
+          hn::GetLane(hn::SumOfLanes(DI(), yy))};
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace beampipe
 HWY_AFTER_NAMESPACE();
@@ -92,6 +108,10 @@ float farthest_depth(const DepthPlane<float>& plane, const SamplePattern* patter
 HWY_EXPORT(position_sums_kernel);
 PositionSums position_sums(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks) {
   return HWY_DYNAMIC_DISPATCH(position_sums_kernel)(patterns, words, masks);
+}
+HWY_EXPORT(position_squares_kernel);
+PositionSquares position_squares(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks) {
+  return HWY_DYNAMIC_DISPATCH(position_squares_kernel)(patterns, words, masks);
 }
 }  // namespace beampipe
 #endif

@@ -29,6 +29,12 @@ struct PositionSums {
 };
 PositionSums position_sums(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks);
 
+// The sums of their squares and of their products.
+struct PositionSquares {
+  std::int32_t xx, xy, yy;
+};
+PositionSquares position_squares(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks);
+
 namespace scalar {
 #include "simd/plane_order-inl.h"
 }

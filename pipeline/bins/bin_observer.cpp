@@ -134,7 +134,7 @@ void BinObserver::describe(const Pair& pair, const Tile& pixel, PixelObserver& o
   Fate fate = fragments.empty() ? Fate::no_area : masks_ ? Fate::closed_off : Fate::no_sample;
   const double area = fragments.empty() ? 0 : fragments.front().alpha;
   if (masks_ && context_.has_alpha() && !fragments.empty()) {
-    alpha_mask({context_.shader, pixel}, patterns_of(options), unused, fragments);
+    alpha_mask({context_.shader, pixel}, patterns_of(options), options.alpha, unused, fragments);
     if (fragments.empty()) fate = Fate::cut_out;
   }
   const std::uint32_t index = observer.fragment_of(pair.triangle, fate);

@@ -9,8 +9,9 @@
 namespace beampipe {
 namespace {
 
-ShadingRules with_colors(ShadingRules rules, SurfaceColors colors) {
-  rules.colors = colors;
+ShadingRules with_input(ShadingRules rules, const FrameInput& run) {
+  rules.colors = run.colors;
+  rules.texture_taps = run.texture_taps;
   return rules;
 }
 
@@ -36,7 +37,7 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
              run.textures   ? run.textures
              : own_textures ? &*own_textures
                             : nullptr,
-             with_colors(rules, run.colors)) {
+             with_input(rules, run)) {
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
     if (triangles.is_opaque(i)) continue;
     (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;

@@ -13,7 +13,8 @@ struct BeamOptions {
   int positions = 256;  // of the mask
   int pool = 40;        // bytes for each pixel of the bin
   int bin = kBinSize;   // pixels on each side
-  OwnerPlace shade_at = OwnerPlace::covered;
+  OwnerShading shading = {};
+  AlphaPlaces alpha = AlphaPlaces::sixteenths;
 };
 
 Framebuffer beam_framebuffer(const BeamOptions& beam) {
@@ -25,7 +26,8 @@ FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
-  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes);
+  BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes);
+  options.alpha = beam.alpha;
   const BinPlan plan{.stages = {StageId::bin_sort, StageId::conservative_raster, StageId::beam_fragment,
                                 StageId::compose, StageId::shade, StageId::resolve},
                      .framebuffer = beam_framebuffer(beam),
@@ -38,7 +40,7 @@ FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     ComposePooledUnit<Words> compose(bin,
-                                     owners_bin(bin, positions, ordered.triangles, &ordered.watermarks, beam.shade_at),
+                                     owners_bin(bin, positions, ordered.triangles, &ordered.watermarks, beam.shading),
                                      {.bytes_per_pixel = beam.pool});
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
@@ -63,7 +65,9 @@ TechniqueKind beam_kind() {
           "fragments with analytic coverage and a mask, taken near to far in each bin; a pixel has a word, and where "
           "surfaces share it a record in the bin's pool, until nothing nearer can hide them any more",
       .source = "ours, after Crassin et al. 2018",
-      .examples = {"beam", "beam:bits=128,pool=30,at=visible", "beam:bits=32,pool=16,bin=8,at=quarters"},
+      .examples = {"beam", "beam:bits=128,pool=30,at=visible", "beam:bits=32,pool=16,bin=8,at=quarters",
+                   "beam:at=covered,alpha=256,filter=sampler"},
+      .texture_taps = 16,
       .stressed = {"beam", "beam:bits=128,pool=0"},
       .make = make_from(
           BeamOptions{},
@@ -84,13 +88,25 @@ TechniqueKind beam_kind() {
                         {"128", 128}},
                        "bytes on chip for each pixel of the bin, which records share; beyond that, records lie in "
                        "memory"),
-                choice("at", o.shade_at,
+                choice("at", o.shading.at,
                        {{"covered", OwnerPlace::covered},
                         {"visible", OwnerPlace::visible},
                         {"quarters", OwnerPlace::quarters},
-                        {"sixteenths", OwnerPlace::sixteenths}},
+                        {"sixteenths", OwnerPlace::sixteenths},
+                        {"adaptive", OwnerPlace::adaptive}},
                        "shading point of a surface with a material: the centroid of what its triangle covers, of its "
-                       "own positions, or of its positions in each quarter or sixteenth of the pixel"),
+                       "own positions, or of its positions in each quarter or sixteenth of the pixel; or as many of "
+                       "these as light needs, with textures filtered over the positions"),
+                beside(
+                    "at=adaptive", [&o] { return o.shading.at == OwnerPlace::adaptive; },
+                    number("tolerance", o.shading.tolerance, 0, 1000,
+                           "how far light may vary, times the share of the pixel, where it is shaded once")),
+                choice("alpha", o.alpha,
+                       {{"1", AlphaPlaces::one},
+                        {"4", AlphaPlaces::quarters},
+                        {"16", AlphaPlaces::sixteenths},
+                        {"256", AlphaPlaces::all}},
+                       "places of a pixel where the texture of a cutout is looked up first; 256: at each position"),
                 choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
           },
           [](const BeamOptions& o) {

@@ -75,6 +75,7 @@ TechniqueKind beam_sorted_kind() {
               "aggregate that conserves area, until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
           .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,window=one"},
+          .texture_taps = 16,
           .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
           .make = make_from(
               SortedOptions{},

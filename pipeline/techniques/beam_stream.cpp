@@ -34,7 +34,7 @@ FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t clo
     ShadeUnit shade(bin);
     bin.triangle_fetches().load_setup();
     ComposePooledUnit<kWords> compose(
-        bin, owners_bin(bin, positions, bin.list, nullptr, OwnerPlace::covered),
+        bin, owners_bin(bin, positions, bin.list, nullptr),
         {.bytes_per_pixel = kPoolBytes, .most_owners = kOwners, .of_frame = &pool, .closes_at = closes_at});
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
@@ -73,6 +73,7 @@ TechniqueKind beam_stream_kind() {
               "the pool is full",
           .source = "ours",
           .examples = {"beam:order=stream"},
+          .texture_taps = 16,
           .stressed = {"beam:order=stream"},
           .make = make_plain([] {
             return Technique{.framebuffer = stream_framebuffer(),

@@ -53,7 +53,7 @@ class BeamFragmentUnit {
     beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
     if (!bin_.context.has_alpha()) return;
     const BinStage masking = bin_.stage(StageId::alpha_mask);
-    alpha_mask(bin_.shader(), patterns_, masking.timed(), fragments_, bin_.texels());
+    alpha_mask(bin_.shader(), patterns_, options_.alpha, masking.timed(), fragments_, bin_.texels());
     bin_.charge_texels(masking);
   }
 

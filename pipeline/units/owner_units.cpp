@@ -27,7 +27,7 @@ void OpenPixelStore::finish() {
 }
 
 OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                     const std::vector<float>* watermarks, OwnerPlace shade_at) {
+                     const std::vector<float>* watermarks, const OwnerShading& shading) {
   if (list.size() > OwnerSlot::kMostTriangles)
     throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                              std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
@@ -38,7 +38,7 @@ OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList&
           .positions = positions,
           .shader = bin.shader(),
           .lists_fetches = bin.models_memory(),
-          .shade_at = shade_at,
+          .shading = shading,
           .observers = bin.observers()};
 }
 

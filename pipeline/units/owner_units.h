@@ -41,6 +41,6 @@ class OpenPixelStore {
 // `watermarks` may be null. All must outlive the result. Throws std::runtime_error if the list is longer than an owner
 // can name.
 OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                     const std::vector<float>* watermarks, OwnerPlace shade_at);
+                     const std::vector<float>* watermarks, const OwnerShading& shading = {});
 
 }  // namespace beampipe

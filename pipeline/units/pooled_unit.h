@@ -102,6 +102,7 @@ class ComposePooledUnit {
   PooledResult new_result() {
     PooledResult result(pooled_maps_);
     result.texels = bin_.texels();
+    if (!owners_.shader.is_flat()) result.shadings = &bin_.pixel_counter("shadings");
     result.lists_visits = bin_.models_memory() && !bin_.keeps_pixels_on_chip();
     result.lists_claims = frame_pool_ != nullptr;
     return result;

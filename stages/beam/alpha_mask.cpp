@@ -1,7 +1,10 @@
 #include "stages/beam/alpha_mask.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "stages/beam/alpha_mask_cost.h"
 #include "stages/surface/opacity.h"
@@ -24,12 +27,17 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
   }
 }
 
+// Places of a pixel on each axis, where its parts are looked up.
+int places_of(AlphaPlaces places) { return places == AlphaPlaces::one ? 1 : places == AlphaPlaces::quarters ? 2 : 4; }
+
 // Takes from fragments what their triangles' alpha lets through.
 class AlphaMask {
  public:
-  AlphaMask(const TileShader& shader, const std::vector<SamplePattern>& patterns, TexelRequests* texels)
+  AlphaMask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
+            TexelRequests* texels)
       : shader_(shader),
         patterns_(patterns),
+        places_(places),
         texels_(texels),
         spacing_(1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()))) {}
 
@@ -52,18 +60,85 @@ class AlphaMask {
       end_request(texels_);
       return part;
     }
+    const CutoutCover cover = cover_of(fragment);
+    if (cover == CutoutCover::all) return 1.0f;
+    if (cover == CutoutCover::none) return 0.0f;
     ++work.masks, ++work.shares;
+    return places_ == AlphaPlaces::all ? test_each(fragment) : test_parts(fragment);
+  }
+
+  // What is known of the whole pixel from one look-up.
+  CutoutCover cover_of(const Fragment& fragment) {
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    ++work.covers;
+    const CutoutCover cover = shader_.tested_cover(fragment.triangle, fragment.pixel, texels_);
+    end_request(texels_);
+    return cover;
+  }
+
+  float test_each(Fragment& fragment) {
     const OpacityRanks ranks = ranks_of(fragment);
     const auto covered = static_cast<float>(fragment.mask.count());
     WideMask left;
     float sum = 0;
     const auto test = [&](std::size_t position, float u, float v) {
-      ++work.positions;
+      ++work.ranked;
       const float part = covered_part(fragment, u, v, spacing_);
       sum += part;
       if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
     };
     for_each_position(fragment.mask, patterns_, test, [&] { end_request(texels_); });
+    fragment.mask = left;
+    return sum / covered;
+  }
+
+  // A part of the pixel: its middle and its patch.
+  struct Part {
+    float u, v;
+    std::optional<SurfaceShader::CutoutPatch> patch;
+  };
+
+  // Finds the part of a grid of so many parts on each axis that (u, v) lies in, and looks it up if nobody has.
+  const Part& look_up(const Fragment& fragment, float u, float v, float places, std::span<Part> parts) {
+    const float column = std::floor(u * places), row = std::floor(v * places);
+    Part& part = parts[static_cast<std::size_t>(row * places + column)];
+    if (part.patch) return part;
+    part.u = (column + 0.5f) / places, part.v = (row + 0.5f) / places;
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    ++work.tests;
+    part.patch = shader_.cutout_patch(fragment.triangle, fragment.pixel, part.u, part.v, 1 / places, texels_);
+    work.mixed += part.patch->is_share;
+    return part;
+  }
+
+  // In each part of the pixel, one look-up tells of all positions: alpha between four texels, or the part that passes.
+  // Parts that pass in part are looked up in quarters.
+  float test_parts(Fragment& fragment) {
+    const OpacityRanks ranks = ranks_of(fragment);
+    const auto covered = static_cast<float>(fragment.mask.count());
+    const auto places = static_cast<float>(places_of(places_));
+    std::array<Part, 16> parts;
+    std::array<Part, 64> quarters;
+    WideMask left;
+    float sum = 0;
+    const auto test = [&](std::size_t position, float u, float v) {
+      const Part* part = &look_up(fragment, u, v, places, parts);
+      if (part->patch->is_share && part->patch->part > 0 && part->patch->part < 1)
+        part = &look_up(fragment, u, v, 2 * places, quarters);
+      float passes;
+      if (part->patch->is_share) {
+        ++work.ranked;
+        passes = part->patch->part;
+        if (ranks.takes(static_cast<std::uint32_t>(position), passes)) left.set(position);
+      } else {
+        ++work.interpolated;
+        passes = part->patch->alpha(u - part->u, v - part->v) >= shader_.alpha_cutoff(fragment.triangle) ? 1.0f : 0.0f;
+        if (passes > 0) left.set(position);
+      }
+      sum += passes;
+    };
+    for_each_position(fragment.mask, patterns_, test, [] {});
+    end_request(texels_);
     fragment.mask = left;
     return sum / covered;
   }
@@ -102,15 +177,16 @@ class AlphaMask {
 
   const TileShader& shader_;
   const std::vector<SamplePattern>& patterns_;
+  AlphaPlaces places_;
   TexelRequests* texels_;
   float spacing_;  // of the positions, in pixels
 };
 
 }  // namespace
 
-void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
-                std::vector<Fragment>& fragments, TexelRequests* texels) {
-  AlphaMask mask(shader, patterns, texels);
+void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
+                StageCounters& counters, std::vector<Fragment>& fragments, TexelRequests* texels) {
+  AlphaMask mask(shader, patterns, places, texels);
   for (Fragment& fragment : fragments) mask(fragment);
   const std::size_t before = fragments.size();
   std::erase_if(fragments, [](const Fragment& fragment) { return fragment.alpha <= 0; });

@@ -2,7 +2,9 @@
 //
 // Of a cutout, a mask position belongs to the surface if alpha there is at least the cutoff. Where texels are smaller
 // than the distance of positions, a position is covered in part: by as much of it as passes the test
-// (stages/surface/tested_alpha.h), and as many positions are taken as fit. The fragment's area shrinks by the same
+// (stages/surface/tested_alpha.h), and as many positions are taken as fit. With fewer places than positions, alpha
+// between the four texels at a place tells of all positions around it. Where tested alpha says of the whole pixel that
+// it is covered or empty, nothing else is looked up. The fragment's area shrinks by the same
 // share. A speck, which has no positions, is tested or shrinks as a whole. A translucent surface takes the part of its
 // positions and of its area that is its opacity (stages/surface/opacity.h).
 #pragma once
@@ -11,14 +13,16 @@
 
 #include "simd/sample_pattern.h"
 #include "stages/cost/counters.h"
+#include "stages/data/alpha_places.h"
 #include "stages/data/fragment.h"
 #include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
 // Drops fragments of which nothing is left. `patterns`: the mask positions. Adds the texels that are read to `texels`,
-// unless it is null: a request for each word of a mask, whose positions are tested at once.
-void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
-                std::vector<Fragment>& fragments, TexelRequests* texels = nullptr);
+// unless it is null: a request for each word of a mask, whose positions are tested at once, or for all parts of a
+// pixel.
+void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
+                StageCounters& counters, std::vector<Fragment>& fragments, TexelRequests* texels = nullptr);
 
 }  // namespace beampipe

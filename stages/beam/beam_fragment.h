@@ -12,6 +12,7 @@
 #include "simd/position_mask.h"
 #include "simd/sample_mask.h"
 #include "stages/cost/counters.h"
+#include "stages/data/alpha_places.h"
 #include "stages/data/fragment.h"
 #include "stages/data/pair.h"
 #include "stages/data/setup_triangle.h"
@@ -36,6 +37,7 @@ struct BeamFragmentOptions {
   // Use the depth range of the clipped triangle, as the published rules do. If not, use the wider depth bounds of the
   // pair.
   bool clipped_depth = true;
+  AlphaPlaces alpha = AlphaPlaces::sixteenths;  // for the stage that takes alpha away
 };
 
 // Options for masks on a grid, without the depth range of the clipped triangle. `grid` must outlive the result.

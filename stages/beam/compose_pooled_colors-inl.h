@@ -6,6 +6,7 @@
 #define BEAMPIPE_STAGES_BEAM_COMPOSE_POOLED_COLORS_INL_H_
 #endif
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -33,7 +34,7 @@ class OwnerColors {
   // Computes the colours of all owners that are left, for of_final() and of_cover(). The modelled machine shades owners
   // as they become final, so this leaves them alone if their requests for texels are kept.
   void shade_all(PooledPixels<Words>& pixels) {
-    if (bin_.shader.is_flat() || bin_.shade_at != OwnerPlace::covered) return;
+    if (bin_.shader.is_flat() || bin_.shading.at != OwnerPlace::covered) return;
     if (result_.texels && result_.texels->are_kept()) return;
     std::vector<Invocation> invocations;
     const auto add = [&](std::uint32_t pixel, std::uint32_t number, float u, float v) {
@@ -76,7 +77,9 @@ class OwnerColors {
   }
 
   glm::vec3 of_speck(const Fragment& speck) {
-    return shade(speck.pixel, speck.triangle, {speck.centroid_u, speck.centroid_v});
+    const bool is_filtered = bin_.shading.at == OwnerPlace::adaptive;
+    return shade(speck.pixel, speck.triangle, {speck.centroid_u, speck.centroid_v},
+                 is_filtered ? std::sqrt(speck.alpha) : 1.0f);
   }
 
  private:
@@ -86,14 +89,17 @@ class OwnerColors {
     const std::uint32_t at = first_shaded_.empty() ? kNotShaded : shaded_at_[first_shaded_[pixel] + k];
     if (at == kNotShaded) return shade_owner(pixel, number, centroid, owned);
     result_.shaded.push_back({bin_.list[number]});
+    if (result_.shadings) ++(*result_.shadings)[pixel];
     return colors_[at];
   }
 
   glm::vec3 shade_owner(std::uint32_t pixel, std::uint32_t number, const glm::vec2& centroid, const Mask& owned) {
     const std::uint32_t triangle = bin_.list[number];
-    if (bin_.shade_at == OwnerPlace::covered || bin_.shader.is_flat(triangle)) return shade(pixel, triangle, centroid);
-    if (bin_.shade_at == OwnerPlace::visible) return shade_at_mean(pixel, triangle, owned, 1.0f);
-    if (bin_.shade_at == OwnerPlace::quarters)
+    if (bin_.shading.at == OwnerPlace::covered || bin_.shader.is_flat(triangle))
+      return shade(pixel, triangle, centroid);
+    if (bin_.shading.at == OwnerPlace::visible) return shade_at_mean(pixel, triangle, owned, 1.0f);
+    if (bin_.shading.at == OwnerPlace::adaptive) return shade_adaptively(pixel, triangle, owned);
+    if (bin_.shading.at == OwnerPlace::quarters)
       return shade_parts(pixel, triangle, owned, bin_.positions.quarters, 0.5f);
     return shade_parts(pixel, triangle, owned, bin_.positions.sixteenths, 0.25f);
   }
@@ -117,13 +123,72 @@ class OwnerColors {
     return shade(pixel, triangle, {mean_position(sums.x, count), mean_position(sums.y, count)}, width);
   }
 
-  // `width`: of the area that the colour stands for, in pixels.
-  glm::vec3 shade(std::uint32_t pixel, std::uint32_t triangle, const glm::vec2& at, float width = 1.0f) {
+  // What is owned of an area: its mean position, and the footprint of its positions.
+  struct Area {
+    glm::vec2 at;
+    Footprint footprint;
+    float count;  // of positions
+  };
+  // `middle`, `width`: of the whole area, which has the positions `all`.
+  Area area_of(const Mask& owned, const Mask& all, const glm::vec2& middle, float width) {
+    const auto count = static_cast<float>(owned.count());
+    if (owned == all) return {middle, Footprint(width), count};
+    ++work_.measured, ++work_.sided;
+    const WideMask words = owned.wide();
+    const SamplePattern* const patterns = bin_.positions.patterns.data();
+    const PositionSums sums = position_sums(patterns, Words, words.words.data());
+    const PositionSquares squares = position_squares(patterns, Words, words.words.data());
+    const Sides<float> sides =
+        sides_of({sums.x, sums.y}, {squares.xx, squares.xy, squares.yy}, count, static_cast<float>(kPositions));
+    return {{mean_position(sums.x, count), mean_position(sums.y, count)},
+            Footprint(sides.right, sides.down, sides.height),
+            count};
+  }
+
+  // May light vary by more in the area than is tolerated?
+  bool varies(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
+    work_.ranges += bin_.shader.work(triangle).range;
+    const float range = bin_.shader.light_range(triangle, pixel, area.at.x, area.at.y, area.footprint, result_.texels);
+    end_request(result_.texels);
+    return range * (area.count / kPositions) > bin_.shading.tolerance;
+  }
+
+  // Halves the pixel in both directions where light varies, up to twice.
+  glm::vec3 shade_adaptively(std::uint32_t pixel, std::uint32_t triangle, const Mask& owned) {
+    const Area whole = area_of(owned, Mask::filled(true), glm::vec2(0.5f), 1.0f);
+    if (!varies(pixel, triangle, whole)) return shade(pixel, triangle, whole.at, whole.footprint);
+    glm::vec3 sum(0.0f);
+    const auto add = [&](const Area& area) { sum += area.count * shade(pixel, triangle, area.at, area.footprint); };
+    const auto middle_of = [](std::size_t column, std::size_t row, float width) {
+      return (glm::vec2(column, row) + 0.5f) * width;
+    };
+    for (std::size_t q = 0; q < 4; ++q) {
+      const Mask quarter(bin_.positions.quarters[q]), here = owned & quarter;
+      if (here.none()) continue;
+      const Area area = area_of(here, quarter, middle_of(q % 2, q / 2, 0.5f), 0.5f);
+      if (!varies(pixel, triangle, area)) {
+        add(area);
+        continue;
+      }
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t column = 2 * (q % 2) + i % 2, row = 2 * (q / 2) + i / 2;
+        const Mask sixteenth(bin_.positions.sixteenths[4 * row + column]), there = owned & sixteenth;
+        if (!there.none()) add(area_of(there, sixteenth, middle_of(column, row, 0.25f), 0.25f));
+      }
+    }
+    return sum / whole.count;
+  }
+
+  // `footprint`: the area that the colour stands for.
+  glm::vec3 shade(std::uint32_t pixel, std::uint32_t triangle, const glm::vec2& at, const Footprint& footprint = {}) {
     result_.shaded.push_back({triangle});
-    const glm::vec3 color = bin_.shader.color(triangle, pixel, at.x, at.y, width, result_.texels);
+    if (result_.shadings && !bin_.shader.is_flat(triangle)) ++(*result_.shadings)[pixel];
+    const glm::vec3 color = bin_.shader.color(triangle, pixel, at.x, at.y, footprint, result_.texels);
     end_request(result_.texels);
     return color;
   }
+
+  static constexpr int kPositions = 32 * Words;
 
   const OwnersBin& bin_;
   OwnersResult& result_;

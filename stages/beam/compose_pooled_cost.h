@@ -33,6 +33,8 @@ struct PooledWork {
   std::uint64_t finality_tests = 0;                    // of owners, against the watermark
   std::uint64_t farthest_found = 0;                    // farthest depths over an owner's positions
   std::uint64_t measured = 0;                          // owners whose mean position was found
+  std::uint64_t sided = 0;                             // of these, with the sides of their area
+  OperationCounts ranges{};                            // what it costs to find how far light may vary
   std::uint64_t pairs_compared = 0;                    // of owners
   std::uint64_t merges = 0;                            // of two owners
   std::uint64_t fractions = 0, order_tests = 0;        // to sort owners that become final
@@ -111,6 +113,14 @@ inline OperationCounts mean() {
   });
 }
 
+// The sides of an area, from sums of squares.
+inline OperationCounts sides() {
+  return of([](const Number& one, OperationCounts& counts) {
+    const Integer sum(0, counts);
+    sides_of({sum, sum}, {sum, sum, sum}, one, one);
+  });
+}
+
 // What a slot is, for rounding.
 inline Bits content(OperationCounts& counts) { return OwnerSlot::content_of(Bits(0, counts), Bits(0, counts)); }
 
@@ -170,17 +180,19 @@ void charge(const PooledWork& work, StageCounters& counters) {
                                      of_votes = by_size(6, speck_votes_cost);
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
-                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_pair = pair_cost(),
-                        of_merge = merge(Words), of_retirement = retirement(Words), of_bounds = plane_bounds_cost(),
-                        of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(),
-                        of_seen_speck = seen_speck(), of_added_speck = added_speck(), of_limit = limit_cost();
+                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_sides = sides(),
+                        of_pair = pair_cost(), of_merge = merge(Words), of_retirement = retirement(Words),
+                        of_bounds = plane_bounds_cost(), of_vertices = vertex_bounds_cost(),
+                        of_speck_test = speck_test_cost(), of_seen_speck = seen_speck(), of_added_speck = added_speck(),
+                        of_limit = limit_cost();
   static const UnitCost of_meeting = of_masks(Words, [](const CountedMask&mask) { is_met(mask, mask); }),
                         of_win = of_masks(Words, [](const CountedMask&mask) { with_won(mask, mask, mask); }),
                         of_claim = of_masks(Words, [](const CountedMask&mask) { claim_of(mask, mask, mask).none(); }),
                         of_take = of_masks(Words, [](CountedMask mask) { take_from(mask, mask); });
   constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfFraction{.special = 1},
-      kOfPosition{.add = 2},  // its x and y
-      kOfFarther{.add = 1};   // than the owners before it
+      kOfPosition{.add = 2},     // its x and y
+      kOfSquares{.mul_add = 3},  // of these
+      kOfFarther{.add = 1};      // than the owners before it
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
@@ -204,6 +216,9 @@ void charge(const PooledWork& work, StageCounters& counters) {
   counters.ops += of_farthest * work.farthest_found;
   counters.ops += kOfPosition * (kPositions * work.measured);
   counters.ops += of_mean * work.measured;
+  counters.ops += kOfSquares * (kPositions * work.sided);
+  counters.ops += of_sides * work.sided;
+  counters.ops += work.ranges;
   counters.ops += of_pair * work.pairs_compared;
   counters.ops += of_merge * work.merges;
   counters.ops += kOfFraction * work.fractions;

@@ -41,6 +41,25 @@ Float mean_position(const Int& sum, const Float& count) {
   return to_float(sum) * (Float(1.0f) / (count * Float(kSubpixelUnits)));
 }
 
+// The sides, (right, down) and (0, height), of a parallelogram whose points have the mean and the second moments of an
+// area that is known by `count` of `all` positions of a pixel. Sums are of coordinates in 1/256 px.
+template <class Float>
+struct Sides {
+  Float right, down, height;
+};
+template <class Int, class Float>
+Sides<Float> sides_of(const Int (&sums)[2], const Int (&squares)[3], const Float& count, const Float& all) {
+  const Float x = mean_position(sums[0], count), y = mean_position(sums[1], count), own = Float(1.0f) / all;
+  const Float scale = Float(1.0f) / (count * Float(kSubpixelUnits * kSubpixelUnits));
+  const auto spread = [&](const Int& sum, const Float& product) {
+    return Float(12.0f) * (to_float(sum) * scale - product);
+  };
+  // A position stands for an area of its own.
+  const Float right = square_root(greater(spread(squares[0], x * x), Float(0.0f)) + own);
+  const Float down = spread(squares[1], x * y) / right;
+  return {right, down, square_root(greater(spread(squares[2], y * y) - down * down, Float(0.0f)) + own)};
+}
+
 // Where sums round what a surface adds: a number above 0 and up to 1 that differs between surfaces. It depends on
 // `content`, what the surface is, and not on the order of triangles. Its eight bits are exact in the sum of a float and
 // the largest addend.
@@ -85,8 +104,9 @@ struct FinalSums {
 // Adds a surface that became final. `content`: of its slot; `final_positions`: those of surfaces that were added
 // before. Returns the area that it shows.
 template <class Float, class Int, class Bits>
-[[gnu::always_inline]] inline Float add_final(const SurfaceArea<Float>& surface, const Float (&color)[3], const Bits& content, const Float& positions,
-                const Float& final_positions, FinalSums<Int, Bits>& sums) {
+[[gnu::always_inline]] inline Float add_final(const SurfaceArea<Float>& surface, const Float (&color)[3],
+                                              const Bits& content, const Float& positions, const Float& final_positions,
+                                              FinalSums<Int, Bits>& sums) {
   const Float area = retired_area(surface, positions, {FixedSum::value(sums.area), final_positions});
   const Float counted = surface.visible / positions;
   sums.add(
@@ -193,7 +213,8 @@ struct Estimate {
 
 // The analytic estimate, moved towards the counted one as far as the tolerances demand.
 template <class Float>
-[[gnu::always_inline]] inline Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate<Float>& counted, Float positions) {
+[[gnu::always_inline]] inline Estimate<Float> limited_estimate(const Estimate<Float>& analytic,
+                                                               const Estimate<Float>& counted, Float positions) {
   const Float zero(0.0f), one(1.0f);
   const auto limited = [](Float x, Float middle, Float tolerance) {
     return lesser(greater(x, middle - tolerance), middle + tolerance);

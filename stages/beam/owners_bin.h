@@ -15,8 +15,16 @@
 namespace beampipe {
 
 // Where an owner is shaded that is not flat: at the centroid of what its triangle covers, at the mean of its positions,
-// or in each quarter or sixteenth of the pixel at the mean of its positions there.
-enum class OwnerPlace { covered, visible, quarters, sixteenths };
+// or in each quarter or sixteenth of the pixel at the mean of its positions there. adaptive: once, or in some quarters
+// and sixteenths, with textures filtered over the positions.
+enum class OwnerPlace { covered, visible, quarters, sixteenths, adaptive };
+
+struct OwnerShading {
+  OwnerPlace at = OwnerPlace::adaptive;
+  // adaptive: a part of a pixel is shaded in quarters if its light may vary by more than this
+  // (SurfaceShader::light_range), times its share of the pixel.
+  float tolerance = 0.1f;
+};
 
 // What a bin has in common for all its fragments.
 struct OwnersBin {
@@ -27,7 +35,7 @@ struct OwnersBin {
   const PositionSet& positions;
   TileShader shader;
   bool lists_fetches;  // fill OwnersResult::fetched
-  OwnerPlace shade_at = OwnerPlace::covered;
+  OwnerShading shading = {};
   const PixelObservers* observers = nullptr;  // who looks at the pixels; null: nobody
 };
 
@@ -35,7 +43,8 @@ struct OwnersBin {
 struct OwnersResult {
   std::vector<ShadedTriangle> shaded;  // once for each time that one was shaded
   std::vector<std::uint32_t> fetched;  // triangles, once for each time that an owner's depth plane was computed again
-  TexelRequests* texels = nullptr;     // where shading adds a request of each invocation; null: nowhere
+  std::vector<float>* shadings = nullptr;  // by pixel, how often surfaces that are not flat were shaded; or null
+  TexelRequests* texels = nullptr;         // where shading adds a request of each invocation; null: nowhere
 };
 
 // Counts per pixel of the tile.

@@ -30,6 +30,7 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "beam in near-first order"},
       {"record_bytes", "bytes", "the most that the pixel's record has had, wherever it lies",
        "beam in near-first and streaming order"},
+      {"shadings", "shadings", "how often surfaces with a material were shaded", "beam in both orders of one pass"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},
       {"quads_of_2", "0 or 1", "the pixel's quad shows two materials", "dvm"},

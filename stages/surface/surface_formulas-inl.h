@@ -28,6 +28,11 @@ Triple<Real> unit(const Triple<Real>& a) {
 }
 
 template <class Real>
+Real length(const Triple<Real>& a) {
+  return square_root(dot(a, a));
+}
+
+template <class Real>
 Triple<Real> triple(const glm::vec3& v) {
   return {Real(v.x), Real(v.y), Real(v.z)};
 }
@@ -43,6 +48,30 @@ Real ambient_light(const Ambient& ambient, const Triple<Real>& direction, std::s
   const Real share = Real(0.5f) + Real(0.5f) * dot(direction, triple<Real>(ambient.up));
   const int c = static_cast<int>(channel);
   return mixed(Real(ambient.ground[c]), Real(ambient.sky[c]), share);
+}
+
+// Microfacets that face half-way between light and eye, for each one of a mirror; `normal_half`: the cosine between
+// that direction and the normal.
+template <class Real>
+Real ggx_density(const Real& normal_half, const Real& alpha2) {
+  const Real root = normal_half * normal_half * (alpha2 - Real(1.0f)) + Real(1.0f);
+  return alpha2 / (root * root);
+}
+
+// What Smith's visibility divides by, for the cosines between the normal and light and eye.
+template <class Real>
+Real smith_divisor(const Real& normal_light, const Real& normal_eye, const Real& alpha2) {
+  const Real one(1.0f);
+  return (normal_eye + square_root(normal_eye * normal_eye * (one - alpha2) + alpha2)) *
+         (normal_light + square_root(normal_light * normal_light * (one - alpha2) + alpha2));
+}
+
+// Schlick's weight of the reflectance of grazing light.
+template <class Real>
+Real fresnel_weight(const Real& eye_half) {
+  const Real zero(0.0f), one(1.0f);
+  const Real grazing = one - lesser(greater(eye_half, zero), one), grazing2 = grazing * grazing;
+  return grazing2 * grazing2 * grazing;
 }
 
 // Linear RGB towards the eye. Ambient light is reflected diffusely, and from the mirrored direction, which roughness
@@ -65,13 +94,8 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
     const Triple<Real> half_way = unit(sum(to_light, surface.to_eye));
     const Real normal_light = greater(dot(surface.normal, to_light), zero);
     const Real normal_half = dot(surface.normal, half_way);
-    const Real density_root = normal_half * normal_half * (alpha2 - one) + one;
-    const Real density = alpha2 / (density_root * density_root);
-    const Real smith = (normal_eye + square_root(normal_eye * normal_eye * (one - alpha2) + alpha2)) *
-                       (normal_light + square_root(normal_light * normal_light * (one - alpha2) + alpha2));
-    const Real specular = density / smith;
-    const Real grazing = one - lesser(greater(dot(surface.to_eye, half_way), zero), one), grazing2 = grazing * grazing;
-    const Real fresnel = grazing2 * grazing2 * grazing;
+    const Real specular = ggx_density(normal_half, alpha2) / smith_divisor(normal_light, normal_eye, alpha2);
+    const Real fresnel = fresnel_weight(dot(surface.to_eye, half_way));
     for (std::size_t c = 0; c < 3; ++c) {
       const Real reflectance = mirror[c] + (one - mirror[c]) * fresnel;
       const Real reflected = (one - reflectance) * diffuse[c] + reflectance * specular;
@@ -87,6 +111,72 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
     light[c] = light[c] + (one - mirror[c]) * diffuse[c] * ambient_light(*lighting.ambient, surface.normal, c) +
                mirror[c] * ambient_light(*lighting.ambient, mirrored, c);
   return light;
+}
+
+// How the directions at a point turn within an area around it: the normal by up to `right` and `down`, towards both
+// sides of the area, and all of them by up to `around`, in radians, in any direction.
+template <class Real>
+struct Turn {
+  Triple<Real> right, down;
+  Real around;
+};
+
+// The shortest vector, about, of from + s * right + t * down with s and t between -1 and 1.
+template <class Real>
+Triple<Real> nearest_of(const Triple<Real>& from, const Turn<Real>& turn) {
+  const Real one(1.0f), tiny(1e-12f);
+  Triple<Real> nearest = from;
+  Real s(0.0f), t(0.0f);
+  const auto move = [&](const Triple<Real>& along, Real& at) {
+    const Real wanted = at - dot(nearest, along) / greater(dot(along, along), tiny);
+    const Real next = greater(lesser(wanted, one), Real(-1.0f));
+    nearest = sum(nearest, scaled(along, next - at));
+    at = next;
+  };
+  move(turn.right, s);
+  move(turn.down, t);
+  move(turn.right, s);
+  return nearest;
+}
+
+// How far reflected light may vary, about, around a point where directions turn: a highlight from its brightest to its
+// darkest there, and the bend of diffuse light, whose slope does not change a mean. Of the strongest channel; ambient
+// light varies little.
+template <class Real>
+Real light_range(const Reflector<Real>& surface, const Turn<Real>& turn, const Lighting& lighting) {
+  const Real zero(0.0f), one(1.0f);
+  const Real roughness = greater(surface.roughness, Real(kLeastRoughness));
+  const Real alpha = roughness * roughness, alpha2 = alpha * alpha;
+  const Real normal_eye = greater(dot(surface.normal, surface.to_eye), Real(1e-3f));
+  const Real base = greater(greater(surface.base[0], surface.base[1]), surface.base[2]);
+  const Real mirror = lesser(mixed(Real(kDielectricReflectance), base, surface.metallic), one);
+  const Real all = length(turn.right) + length(turn.down) + turn.around;
+  const Real bend = base * (one - surface.metallic) * (Real(0.25f) * all * all);
+  Real range = zero;
+  for (const Light& source : lighting.lights) {
+    const Triple<Real> to_light = triple<Real>(-source.direction);
+    const Triple<Real> half_way = unit(sum(to_light, surface.to_eye));
+    const Real normal_light = lesser(greater(dot(surface.normal, to_light) + all, zero), one);
+    const Real normal_half = dot(surface.normal, half_way);
+    // From the direction half-way to the normal; its length is the sine of the angle between them.
+    const Triple<Real> away = sum(surface.normal, scaled(half_way, zero - normal_half));
+    const Real nearest = greater(length(nearest_of(away, turn)) - turn.around, zero);
+    const Real farthest = lesser(length(away) + all, one);
+    const auto density = [&](const Real& sine) {
+      return ggx_density(square_root(greater(one - sine * sine, zero)), alpha2);
+    };
+    const Real specular = (density(nearest) - density(farthest)) / smith_divisor(normal_light, normal_eye, alpha2);
+    const Real reflectance = mirror + (one - mirror) * fresnel_weight(dot(surface.to_eye, half_way));
+    const Real strongest(std::max(std::max(source.color.r, source.color.g), source.color.b));
+    range = range + strongest * normal_light * (reflectance * specular + bend);
+  }
+  return range;
+}
+
+// How far a direction is from another one; both have any length.
+template <class Real>
+Triple<Real> turned(const Triple<Real>& from, const Triple<Real>& to) {
+  return sum(unit(to), scaled(unit(from), Real(-1.0f)));
 }
 
 // Roughness with what normals differ within the texel: the mean of unit vectors is the shorter the more they differ.

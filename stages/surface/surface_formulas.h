@@ -6,6 +6,7 @@
 // Light::color is what a white diffuse surface reflects.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <glm/glm.hpp>

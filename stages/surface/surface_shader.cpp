@@ -8,6 +8,7 @@
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
 #include "stages/surface/alpha_range.h"
+#include "stages/surface/footprint_filter.h"
 #include "stages/surface/lit_colors.h"
 #include "stages/surface/texture_filter.h"
 
@@ -15,6 +16,13 @@ namespace beampipe {
 namespace {
 
 glm::vec2 vector_of(const std::array<float, 2>& v) { return {v[0], v[1]}; }
+
+// How texture coordinates change along the sides of a footprint.
+TextureSlopes along_sides(const TexturePlace<float>& at, const Footprint& footprint) {
+  const glm::vec2 dx = vector_of(at.dx), dy = vector_of(at.dy);
+  const glm::vec2 right = dx * footprint.xx;
+  return {footprint.xy == 0.0f ? right : right + dy * footprint.xy, dy * footprint.yy};
+}
 
 // Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
 template <class Real>
@@ -157,6 +165,46 @@ OperationCounts alpha_cost(const ShaderInputs& shader) {
   });
 }
 
+// Of light_range(): material_of() without colours, normals and directions to the eye at three points, and a look-up of
+// each texture that matters, whose four texels are compared.
+OperationCounts range_cost(const ShaderInputs& shader, const Lighting& lighting) {
+  if (shader.material.unlit) return {};
+  return count_operations([&](OperationCounts& counts) {
+    using Real = Counted<float>;
+    const Real one(1.0f, counts);
+    const Triple<Real> vector{one, one, one};
+    const ScreenPlane<Real> plane{one, one, one};
+    const BarycentricPlanes<Real> planes{plane, plane, plane};
+    SurfaceVertexOf<Real> vertex{
+        .to_eye = vector, .normal = vector, .tangent = vector, .tangent_sign = one, .color = {one, one, one, one}};
+    for (auto& uv : vertex.uvs) uv = {one, one};
+    PointInputs<Real> inputs;
+    inputs.color = {one, one, one, one};
+    for (int point = 0; point < 3; ++point) {
+      const Barycentrics<Real> weights = weights_at(planes, one, one);
+      const auto attribute = [&](auto member) {
+        auto result = vertex.*member;
+        for (Real& number : result) number = interpolated(number, number, number, weights);
+        return result;
+      };
+      set_attributes(shader, TriangleInputs<Real>{vector, one, vector, one}, attribute, inputs);
+      if (point > 0) continue;
+      for_each_texture<Real>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
+        inputs.*texel = {one, one, one, one};
+        if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
+        counted_place(vertex, texture.uv_set, planes, weights, Derivatives::analytic);
+        ++counts.fetch;
+        for (int i = 0; i < 12; ++i) static_cast<void>(greater(one, lesser(one, one)) + one);
+      });
+    }
+    const auto turns = [&] { return Turn<Real>{turned(vector, vector), turned(vector, vector), one}; };
+    if (!shader.has_own_normal) turns();
+    const Turn<Real> of_eye = turns();
+    const Real around = one * (length(of_eye.right) + length(of_eye.down)) + one;
+    light_range(material_of(shader, inputs).reflector, Turn<Real>{vector, vector, around}, lighting);
+  });
+}
+
 OperationCounts light_cost(const Material& material, const Lighting& lighting) {
   return count_operations([&](OperationCounts& counts) {
     using Real = Counted<float>;
@@ -256,7 +304,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
     Work& work = works_[work_index(triangles.surfaces[i].material, shader)];
     if (work.input_bytes == 0)
       work = {material_cost(shader, rules.derivatives), light_cost(shader.material, frame.lighting),
-              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader), shader_input_bytes(shader)};
+              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader), range_cost(shader, frame.lighting),
+              shader_input_bytes(shader)};
   }
 }
 
@@ -277,7 +326,7 @@ const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) 
 }
 
 template <class TextureAlpha>
-float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width,
+float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                  TextureAlpha&& texture_alpha) const {
   if (is_opaque(triangle)) return 1.0f;
   const SetupSurface& surface = triangles_.surfaces[triangle];
@@ -292,17 +341,16 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
                                     weights);
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
-    const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
-    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), slopes));
+    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), along_sides(at, footprint)));
   };
   const float alpha =
       alpha_at(shader, {vertex(0).color[3], vertex(1).color[3], vertex(2).color[3]}, weights, texture_place, fetch);
   return limited_alpha(alpha);
 }
 
-float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width,
+float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
-  return alpha_there(triangle, place, width,
+  return alpha_there(triangle, place, footprint,
                      [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
                        return filtered(textures_->chain(texture.image, ColorSpace::srgb), texture, uv, slopes,
                                        noting(texels, texture.image, ColorSpace::srgb))
@@ -310,15 +358,15 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, fl
                      });
 }
 
-SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
-                                                     TexelRequests* texels) const {
+SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place,
+                                                     const Footprint& footprint, TexelRequests* texels) const {
   const float cutoff = alpha_cutoff(triangle);
   if (cutoff <= 0.0f) return {1.0f};
   const TestedAlpha* tested = nullptr;
   glm::vec4 shares;
   // Of a point; or what the texture's alpha is multiplied by.
   const float alpha = alpha_there(
-      triangle, place, width, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+      triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
         const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
         const FilterPlan plan = filter_plan(chain, texture, slopes);
         if (!plan.is_minified)
@@ -331,6 +379,114 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
       });
   if (!tested) return {alpha >= cutoff ? 1.0f : 0.0f};
   return {tested->share(shares, cutoff / alpha), true};
+}
+
+SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, const ShadingPlace& place,
+                                                       const Footprint& footprint, TexelRequests* texels) const {
+  const float cutoff = alpha_cutoff(triangle);
+  CutoutPatch patch{.is_share = true, .part = 1.0f};
+  if (cutoff <= 0.0f) return patch;
+  const TestedAlpha* tested = nullptr;
+  glm::vec4 shares;
+  const float factor = alpha_there(
+      triangle, place, footprint, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+        const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+        if (filter_plan(chain, texture, slopes).is_minified) {
+          const std::uint32_t material = triangles_.surfaces[triangle].material;
+          tested = &textures_->tested_alpha(material);
+          shares = filtered(tested->shares, texture, uv, footprint_plan(tested->shares, texture, slopes, 1),
+                            noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+          return 1.0f;
+        }
+        patch.is_share = false, patch.is_nearest = texture.magnify == Filter::nearest;
+        const TexelQuad quad = texels_around(chain, texture, 0, uv, noting(texels, texture.image, ColorSpace::srgb));
+        for (std::size_t i = 0; i < 4; ++i) patch.alphas[i] = quad.texels[i].a;
+        const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
+        patch.share = {quad.columns.share, quad.rows.share};
+        patch.right = slopes.dx * size / footprint.xx, patch.down = slopes.dy * size / footprint.yy;
+        return 1.0f;
+      });
+  if (tested) {
+    patch.part = tested->share(shares, cutoff / factor);
+  } else if (patch.is_share) {  // without a texture
+    patch.part = factor >= cutoff ? 1.0f : 0.0f;
+  }
+  patch.factor = factor;
+  return patch;
+}
+
+CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                                        TexelRequests* texels) const {
+  const std::uint32_t material = triangles_.surfaces[triangle].material;
+  if (textures_ == nullptr || textures_->alpha_test(material) == kNoAlphaTest || inputs_of(triangle).has_vertex_colors)
+    return CutoutCover::mixed;
+  CutoutCover cover = CutoutCover::mixed;
+  alpha_there(triangle, place, footprint,
+              [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+                const TestedAlpha& tested = textures_->tested_alpha(material);
+                const CoveringLevel covering = covering_level(tested.shares, slopes);
+                if (!(covering.side <= 1)) return 1.0f;
+                const TexelQuad quad =
+                    texels_around(tested.shares, texture, covering.level, uv,
+                                  noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+                const auto are_all = [&](float share) {
+                  return std::ranges::all_of(quad.texels, [&](const glm::vec4& shares) { return shares[0] == share; });
+                };
+                cover = are_all(1.0f) ? CutoutCover::all : are_all(0.0f) ? CutoutCover::none : CutoutCover::mixed;
+                return 1.0f;
+              });
+  return cover;
+}
+
+float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                                 TexelRequests* texels) const {
+  if (is_flat(triangle) || material(triangle).unlit) return 0.0f;
+  const ShaderInputs shader = inputs_of(triangle);
+  const auto inputs_at = [&](float x, float y, const std::array<TexturePoint*, 2>& texture_points) {
+    ShadingPlace at = place;
+    at.u += x, at.v += y;
+    PointInputs<float> inputs{};
+    set_point({triangle, at, footprint}, shader, &inputs, texture_points);
+    return inputs;
+  };
+  std::array<TexturePoint, 2> points;
+  PointInputs<float> middle = inputs_at(0, 0, {&points[0], &points[1]});
+  const PointInputs<float> right = inputs_at(0.5f * footprint.xx, 0.5f * footprint.xy, {}),
+                           below = inputs_at(0, 0.5f * footprint.yy, {});
+  Turn<float> turn{};
+  turn.around = 0.5f * (length(turned(middle.to_eye, right.to_eye)) +
+                        length(turned(middle.to_eye, below.to_eye)));  // of the direction half-way
+  if (!shader.has_own_normal) {
+    turn.right = scaled(turned(middle.normal, right.normal), middle.facing);
+    turn.down = scaled(turned(middle.normal, below.normal), middle.facing);
+  }
+  for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
+    middle.*texel = {1.0f, 1.0f, 1.0f, 1.0f};
+    if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
+    const ColorSpace space = space_of(role);
+    const MipChain& chain = textures_->chain(texture.image, space);
+    const auto& [uv, slopes] = points[texture.uv_set];
+    const CoveringLevel covering = covering_level(chain, slopes);
+    const TexelQuad quad = texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
+    const auto& all = quad.texels;
+    const glm::vec4 least = glm::min(glm::min(all[0], all[1]), glm::min(all[2], all[3])),
+                    most = glm::max(glm::max(all[0], all[1]), glm::max(all[2], all[3]));
+    const glm::vec4 mean = (all[0] + all[1] + all[2] + all[3]) * 0.25f;
+    if (role == TextureRole::metallic_roughness) {
+      middle.*texel = {mean.r, least.g, most.b, 1.0f};
+      return;
+    }
+    // What four texels span, they span over a length of one texel. A texel of several is the shorter the more they
+    // differ.
+    const glm::vec2 span = (glm::vec2(most) - glm::vec2(least)) * std::min(covering.side, 1.0f);
+    turn.around += std::abs(shader.material.normal_scale) * glm::length(span);
+    if (covering.level > 0) {
+      const float mean_length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
+      turn.around += std::sqrt(2.0f * (1.0f - mean_length));
+    }
+    middle.*texel = {mean.r, mean.g, mean.b, 0.0f};
+  });
+  return beampipe::light_range(material_of(shader, middle).reflector, turn, frame_.lighting);
 }
 
 // Texture coordinates and vertex alphas are quotients of linear functions. As long as the divisor is positive, they are
@@ -381,7 +537,7 @@ void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& 
 
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
   const ShadingPlace& place = invocation.place;
-  const float width = by_pixel ? 1.0f : invocation.width;
+  const Footprint footprint = by_pixel ? Footprint() : invocation.footprint;
   const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
   const auto [x, y] = from_anchor(static_cast<float>(place.x) + (by_pixel ? 0.5f : place.u),
                                   static_cast<float>(place.y) + (by_pixel ? 0.5f : place.v));
@@ -417,7 +573,7 @@ void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& 
         rules_.derivatives == Derivatives::quad && !by_pixel
             ? place_in_quad(set)
             : place_on_triangle<float>({v[0]->uvs[set], v[1]->uvs[set], v[2]->uvs[set]}, surface.planes, x, y, weights);
-    *texture_points[set] = {vector_of(at.uv), vector_of(at.dx) * width, vector_of(at.dy) * width};
+    *texture_points[set] = {vector_of(at.uv), along_sides(at, footprint)};
   }
 }
 
@@ -432,16 +588,17 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
     set_point(invocations[i], shader, inputs ? &inputs[i] : nullptr,
               {reads_set[0] ? &points[0][i] : nullptr, reads_set[1] ? &points[1][i] : nullptr});
   const bool is_kept = texels && texels->are_kept();
+  const int taps = rules_.colors == SurfaceColors::by_pixel ? 0 : rules_.texture_taps;
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
     const ColorSpace space = space_of(role);
     const MipChain& chain = textures_->chain(texture.image, space);
     const auto& at = points[texture.uv_set];
     std::array<float, kMostInvocations> lods;
-    for (std::size_t i = 0; i < invocations.size(); ++i)
-      lods[i] = squared_footprint({at[i].dx, at[i].dy}, chain.levels[0]);
+    for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = squared_footprint(at[i].slopes, chain.levels[0]);
     for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
     for (std::size_t i = 0; i < invocations.size(); ++i) {
-      const FilterPlan plan = filter_plan(chain, texture, {at[i].dx, at[i].dy}, lods[i]);
+      const FilterPlan plan = taps > 0 ? footprint_plan(chain, texture, at[i].slopes, taps)
+                                       : filter_plan(chain, texture, at[i].slopes, lods[i]);
       if (texels && !is_kept) texels->count(plan.texels());
       if (!inputs && !is_kept) continue;
       const glm::vec4 value =
@@ -454,9 +611,9 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
   });
 }
 
-glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
+glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                 TexelRequests* texels) const {
-  const Invocation invocation{triangle, place, width};
+  const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
   find_inputs({&invocation, 1}, texels, &inputs);
   SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
@@ -467,7 +624,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   glm::vec3 color(lit[0], lit[1], lit[2]);
   round_to(rules_.stored_as, color);
   if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
-  return {color, by_pixel ? alpha(triangle, place, width) : limited_alpha(found.alpha)};
+  return {color, by_pixel ? alpha(triangle, place, footprint) : limited_alpha(found.alpha)};
 }
 
 std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
@@ -500,7 +657,7 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     const Invocation& invocation = invocations[i];
     const std::uint32_t triangle = invocation.triangle;
     if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
-      colors[i] = color(triangle, invocation.place, invocation.width, texels);
+      colors[i] = color(triangle, invocation.place, invocation.footprint, texels);
       end_request(texels);
       continue;
     }
@@ -519,10 +676,10 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
   return colors;
 }
 
-void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,
+void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                TexelRequests& texels) const {
   if (is_flat(triangle)) return;
-  const Invocation invocation{triangle, place, width};
+  const Invocation invocation{triangle, place, footprint};
   find_inputs({&invocation, 1}, &texels, nullptr);
 }
 

@@ -15,10 +15,21 @@
 #include "stages/surface/opacity.h"
 #include "stages/surface/surface_formulas.h"
 #include "stages/surface/texel_requests.h"
+#include "stages/surface/texture_filter.h"
 #include "stages/surface/texture_set.h"
 #include "traces/trace.h"
 
 namespace beampipe {
+
+// The part of a pixel that a colour stands for, as a parallelogram: its sides are (xx, xy) and (0, yy), in pixels to
+// the right and down.
+struct Footprint {
+  float xx = 1, xy = 0, yy = 1;
+
+  Footprint() = default;
+  Footprint(float side) : xx(side), yy(side) {}  // a square
+  Footprint(float right, float down, float height) : xx(right), xy(down), yy(height) {}
+};
 
 // A point in a pixel of the frame.
 struct ShadingPlace {
@@ -30,7 +41,7 @@ struct ShadingPlace {
 struct Invocation {
   std::uint32_t triangle;
   ShadingPlace place;
-  float width = 1.0f;  // of the area that the colour stands for, in pixels
+  Footprint footprint{};
 };
 
 // How a shader knows what part of a texture a pixel covers: from the planes of its own triangle, or as the difference
@@ -51,6 +62,9 @@ struct ShadingRules {
   MaterialStorage storage = MaterialStorage::none;
   AccumulatorFormat stored_as = AccumulatorFormat::fp32;  // colours are rounded to it
   SurfaceColors colors = SurfaceColors::by_place;
+  // Textures are means over footprints of at most so many taps: 1, 4 or 16 (stages/surface/footprint_filter.h). 0: as
+  // samplers ask for.
+  int texture_taps = 0;
   bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };
 
@@ -70,38 +84,71 @@ class SurfaceShader {
     return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
   }
 
-  // Linear RGB. `width`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it is
-  // null.
-  glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
+  // Linear RGB. `footprint`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it
+  // is null.
+  glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return glm::vec3(shaded(triangle, place, width, texels));
+    return glm::vec3(shaded(triangle, place, footprint, texels));
   }
 
   // The same for several invocations, side by side, which takes less time. Each is a request of its own.
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const;
 
   // The same with alpha, which is 1 for flat triangles.
-  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f) const {
+  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
-    return shaded(triangle, place, width, nullptr);
+    return shaded(triangle, place, footprint, nullptr);
   }
 
   // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
-  void add_texels(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests& texels) const;
+  void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                  TexelRequests& texels) const;
 
-  // Alpha at a place, whatever SurfaceColors says. `width`, `texels`: as above. 1 for opaque triangles.
-  float alpha(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels = nullptr) const;
+  // Alpha at a place, whatever SurfaceColors says. `footprint`, `texels`: as above. 1 for opaque triangles.
+  float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+              TexelRequests* texels = nullptr) const;
 
   // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
-  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have. `width`,
-  // `texels`: as above.
+  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have.
+  // `footprint`, `texels`: as above.
   struct CutoutPart {
     float part = 0;
     bool is_share = false;  // from tested alpha
   };
-  CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+  CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                          TexelRequests* texels = nullptr) const;
+
+  // How far light may vary in a footprint around a place, about, in linear RGB (light_range in
+  // stages/surface/surface_formulas.h): by the highlights of normals that differ there. Textures of normals and
+  // roughness are read once, where four texels cover the footprint. 0 for flat and unlit triangles. `texels`: as above.
+  float light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                    TexelRequests* texels = nullptr) const;
+
+  // A cutout seen from one place: its four texels there tell alpha around it, or which part of the footprint passes.
+  struct CutoutPatch {
+    bool is_share = false;
+    float part = 0;  // of is_share
+    // Else alpha at (x, y) pixels from the place lies between those of four texels, or is that of the nearest one.
+    std::array<float, 4> alphas{};  // upper left, upper right, lower left, lower right
+    bool is_nearest = false;
+    glm::vec2 share{0.0f}, right{0.0f}, down{0.0f};  // between the texels, and how it changes per pixel
+    float factor = 1;                                // of alpha
+
+    float alpha(float x, float y) const {
+      glm::vec2 at = share + x * right + y * down;
+      if (is_nearest) at = {at.x < 0.5f ? 0.0f : 1.0f, at.y < 0.5f ? 0.0f : 1.0f};
+      const float upper = alphas[0] + at.x * (alphas[1] - alphas[0]),
+                  lower = alphas[2] + at.x * (alphas[3] - alphas[2]);
+      return factor * (upper + at.y * (lower - upper));
+    }
+  };
+  CutoutPatch cutout_patch(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                           TexelRequests* texels = nullptr) const;
+
+  // What tested alpha, in a level where four texels cover a footprint, says for all of it. `texels`: as above.
+  CutoutCover tested_cover(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                           TexelRequests* texels = nullptr) const;
 
   // What the test of alpha(), of points without an area, says for all points of a square that lie in the triangle.
   // `corner`: the upper left one; `side`: in pixels.
@@ -123,10 +170,10 @@ class SurfaceShader {
     return a == b || (is_flat(a) && is_flat(b) && flat_[a] == flat_[b]);
   }
 
-  // What an invocation costs: its operations, for the material, for light and for alpha alone, and bytes of what it
-  // reads of the triangle and its vertices.
+  // What an invocation costs: its operations, for the material, for light and for alpha alone, what others cost, and
+  // bytes of what it reads of the triangle and its vertices.
   struct Work {
-    OperationCounts material, light, alpha;
+    OperationCounts material, light, alpha, range;  // range: of light_range()
     std::uint64_t input_bytes = 0;
   };
   const Work& work(std::uint32_t triangle) const {
@@ -146,10 +193,12 @@ class SurfaceShader {
   // Where an invocation reads a texture, and how that changes over the area that its colour stands for. Not set at
   // first.
   struct TexturePoint {
-    glm::vec2 uv, dx, dy;
+    glm::vec2 uv;
+    TextureSlopes slopes;
   };
 
-  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels) const;
+  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                   TexelRequests* texels) const;
 
   // Sets what the shader knows of a point without its textures, and where it reads them, by set of texture coordinates.
   // Null: nobody wants to know.
@@ -160,7 +209,8 @@ class SurfaceShader {
   void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels, PointInputs<float>* inputs) const;
   // Alpha, where texture_alpha(texture, uv, slopes) says that of the texture.
   template <class TextureAlpha>
-  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width, TextureAlpha&& texture_alpha) const;
+  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                    TextureAlpha&& texture_alpha) const;
   ShaderInputs inputs_of(std::uint32_t triangle) const;
   // Does the material pass through a G-buffer?
   bool is_stored(const Material& material) const {
@@ -200,35 +250,50 @@ class TileShader {
   bool is_flat() const { return !shader_ || shader_->is_flat(); }
 
   // (u, v): in the pixel, from its upper left corner, 0..1.
-  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f,
+  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return shader_->color(triangle, place(pixel, u, v), width, texels);
+    return shader_->color(triangle, place(pixel, u, v), footprint, texels);
   }
   // Of triangles that are not flat.
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
     return shader_->colors(invocations, texels);
   }
-  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f) const {
+  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                            const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
-    return shader_->color_and_alpha(triangle, place(pixel, u, v), width);
+    return shader_->color_and_alpha(triangle, place(pixel, u, v), footprint);
   }
 
-  void add_texels(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+  void add_texels(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
                   TexelRequests& texels) const {
-    if (!is_flat(triangle)) shader_->add_texels(triangle, place(pixel, u, v), width, texels);
+    if (!is_flat(triangle)) shader_->add_texels(triangle, place(pixel, u, v), footprint, texels);
   }
 
-  float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+  float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
               TexelRequests* texels = nullptr) const {
-    return shader_->alpha(triangle, place(pixel, u, v), width, texels);
+    return shader_->alpha(triangle, place(pixel, u, v), footprint, texels);
   }
-  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
-                                        TexelRequests* texels = nullptr) const {
-    return shader_->cutout_part(triangle, place(pixel, u, v), width, texels);
+  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                                        const Footprint& footprint, TexelRequests* texels = nullptr) const {
+    return shader_->cutout_part(triangle, place(pixel, u, v), footprint, texels);
   }
   CutoutCover cutout_cover(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float side) const {
     return shader_->cutout_cover(triangle, place(pixel, u, v), side);
+  }
+  SurfaceShader::CutoutPatch cutout_patch(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                                          const Footprint& footprint, TexelRequests* texels = nullptr) const {
+    return shader_->cutout_patch(triangle, place(pixel, u, v), footprint, texels);
+  }
+  // Of the whole pixel.
+  CutoutCover tested_cover(std::uint32_t triangle, std::uint32_t pixel, TexelRequests* texels = nullptr) const {
+    constexpr float kWidth = 1.125f;  // in pixels: with perspective, a pixel shows more than its slopes say
+    return shader_->tested_cover(triangle, place(pixel, 0.5f, 0.5f), kWidth, texels);
+  }
+  // Of triangles that are not flat.
+  float light_range(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
+                    TexelRequests* texels = nullptr) const {
+    return shader_->light_range(triangle, place(pixel, u, v), footprint, texels);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }

@@ -47,6 +47,31 @@ glm::vec4 shares_of(const TexelsAround& alphas, const glm::vec4& needed) {
   return sum / static_cast<float>(kPlaces * kPlaces);
 }
 
+// A share of 0 or 1 is that of a texel in which nothing or all passes, in every level: others are not rounded to these.
+void keep_parts(MipChain& shares) {
+  for (std::size_t l = 1; l < shares.levels.size(); ++l) {
+    const MipLevel& larger = shares.levels[l - 1];
+    MipLevel& level = shares.levels[l];
+    for (std::uint32_t y = 0; y < level.height; ++y)
+      for (std::uint32_t x = 0; x < level.width; ++x) {
+        glm::u8vec4 least(255), most(0);
+        // As make_mip_chain: all that the texel covers.
+        const auto first = [](std::uint32_t i, std::uint32_t n, std::uint32_t of) { return i * of / n; };
+        const auto last = [](std::uint32_t i, std::uint32_t n, std::uint32_t of) { return ((i + 1) * of - 1) / n; };
+        for (std::uint32_t j = first(y, level.height, larger.height); j <= last(y, level.height, larger.height); ++j)
+          for (std::uint32_t i = first(x, level.width, larger.width); i <= last(x, level.width, larger.width); ++i) {
+            least = glm::min(least, larger.texel(i, j));
+            most = glm::max(most, larger.texel(i, j));
+          }
+        glm::u8vec4& texel = level.texels[std::size_t{y} * level.width + x];
+        for (int c = 0; c < 4; ++c) {
+          if (least[c] < 255) texel[c] = std::min<std::uint8_t>(texel[c], 254);
+          if (most[c] > 0) texel[c] = std::max<std::uint8_t>(texel[c], 1);
+        }
+      }
+  }
+}
+
 }  // namespace
 
 float TestedAlpha::share(const glm::vec4& shares_there, float needed) const {
@@ -84,6 +109,7 @@ TestedAlpha test_alpha(const Material& material, const TextureImage& image) {
     }
   });
   tested.shares = make_mip_chain(shares, ColorSpace::linear);
+  keep_parts(tested.shares);
   return tested;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -89,19 +90,10 @@ inline TexelPair texels_around(float place, std::uint32_t size, Wrap wrap) {
 // Calls read(level, x, y) with each texel that is read. Inlined, because a vector that comes back from a call in parts
 // and is then used as a whole makes the processor wait.
 template <class Read>
-[[gnu::always_inline]] inline glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::size_t level,
-                                                       const glm::vec2& uv, Filter filter, Read&& read) {
+[[gnu::always_inline]] inline glm::vec4 mixed_texels(const MipChain& chain, std::size_t level, const TexelPair& columns,
+                                                     const TexelPair& rows, Read&& read) {
   const MipLevel& image = chain.levels[level];
   const TexelValues& values = texel_values(chain.space);
-  const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
-  if (filter == Filter::nearest) {
-    const std::uint32_t column = wrapped(floor_of(u), image.width, texture.wrap_u);
-    const std::uint32_t row = wrapped(floor_of(v), image.height, texture.wrap_v);
-    read(level, column, row);
-    return values(image.texel(column, row));
-  }
-  const TexelPair columns = texels_around(u, image.width, texture.wrap_u);
-  const TexelPair rows = texels_around(v, image.height, texture.wrap_v);
   for (const std::uint32_t row : {rows.first, rows.second})
     for (const std::uint32_t column : {columns.first, columns.second}) read(level, column, row);
   const glm::u8vec4& upper_left = image.texel(columns.first, rows.first);
@@ -117,6 +109,59 @@ template <class Read>
   return {mixed(values.color, 0), mixed(values.color, 1), mixed(values.color, 2), mixed(values.alpha, 3)};
 }
 
+template <class Read>
+[[gnu::always_inline]] inline glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::size_t level,
+                                                       const glm::vec2& uv, Filter filter, Read&& read) {
+  const MipLevel& image = chain.levels[level];
+  const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
+  if (filter == Filter::nearest) {
+    const std::uint32_t column = wrapped(floor_of(u), image.width, texture.wrap_u);
+    const std::uint32_t row = wrapped(floor_of(v), image.height, texture.wrap_v);
+    read(level, column, row);
+    return texel_values(chain.space)(image.texel(column, row));
+  }
+  return mixed_texels(chain, level, texels_around(u, image.width, texture.wrap_u),
+                      texels_around(v, image.height, texture.wrap_v), read);
+}
+
+// The mean of the nearest texels over a rectangle that is no larger than a texel: of four texels by their parts.
+// `step_width`: its sides, in texture coordinates.
+template <class Read>
+glm::vec4 mean_of_steps(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const glm::vec2& step_width,
+                        Read&& read) {
+  const MipLevel& image = chain.levels[0];
+  const auto parts = [](TexelPair around, float side) {
+    around.share = std::clamp((around.share - 0.5f) / std::max(side, 1e-6f) + 0.5f, 0.0f, 1.0f);
+    return around;
+  };
+  const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
+  return mixed_texels(
+      chain, 0, parts(texels_around(u, image.width, texture.wrap_u), step_width.x * static_cast<float>(image.width)),
+      parts(texels_around(v, image.height, texture.wrap_v), step_width.y * static_cast<float>(image.height)), read);
+}
+
+// The four texels around a place in a level, as filtered_level() mixes them: upper left, upper right, lower left, lower
+// right; and their numbers in the level. Calls read(level, x, y) with each.
+struct TexelQuad {
+  std::array<glm::vec4, 4> texels;
+  TexelPair columns, rows;
+};
+template <class Read>
+TexelQuad texels_around(const MipChain& chain, const Texture& texture, std::size_t level, const glm::vec2& uv,
+                        Read&& read) {
+  const MipLevel& image = chain.levels[level];
+  TexelQuad quad;
+  quad.columns = texels_around(in_texels(uv.x, image.width, texture.wrap_u), image.width, texture.wrap_u);
+  quad.rows = texels_around(in_texels(uv.y, image.height, texture.wrap_v), image.height, texture.wrap_v);
+  std::size_t i = 0;
+  for (const std::uint32_t row : {quad.rows.first, quad.rows.second})
+    for (const std::uint32_t column : {quad.columns.first, quad.columns.second}) {
+      read(level, column, row);
+      quad.texels[i++] = chain.texel(level, column, row);
+    }
+  return quad;
+}
+
 // How a texture is filtered somewhere: in which levels, and at how many points.
 struct FilterPlan {
   bool is_minified = false;        // a texel is smaller than the area
@@ -124,11 +169,15 @@ struct FilterPlan {
   std::size_t level = 0;           // the finer one
   bool has_next = false;           // the next level is read as well
   float share = 0;                 // of the next level
-  float probes = 1;                // a whole number
-  glm::vec2 along{0.0f};           // texture coordinates along which the probes lie
+  float probes = 1, rows = 1;      // whole numbers; in each row so many probes
+  glm::vec2 along{0.0f};           // texture coordinates along which the probes of a row lie
+  glm::vec2 across{0.0f};          // and along which the rows lie
+  glm::vec2 step_width{0.0f};      // not 0: the mean of the nearest texels over so many texture coordinates
 
+  bool is_step() const { return filter == Filter::nearest && step_width != glm::vec2(0.0f); }
   std::uint64_t texels() const {
-    return static_cast<std::uint64_t>(probes) * (filter == Filter::nearest ? 1u : 4u) * (has_next ? 2u : 1u);
+    return static_cast<std::uint64_t>(probes * rows) * (filter == Filter::nearest && !is_step() ? 1u : 4u) *
+           (has_next ? 2u : 1u);
   }
 };
 
@@ -173,15 +222,20 @@ inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, con
 template <class Read>
 glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const FilterPlan& plan,
                    Read&& read) {
+  if (plan.is_step()) return mean_of_steps(chain, texture, uv, plan.step_width, read);
   glm::vec4 sum(0.0f);
-  for (float i = 0; i < plan.probes; ++i) {
-    const glm::vec2 at = plan.probes == 1 ? uv : uv + plan.along * ((i + 0.5f) / plan.probes - 0.5f);
-    const glm::vec4 color = filtered_level(chain, texture, plan.level, at, plan.filter, read);
-    sum += plan.has_next ? color * (1.0f - plan.share) +
-                               filtered_level(chain, texture, plan.level + 1, at, plan.filter, read) * plan.share
-                         : color;
+  for (float j = 0; j < plan.rows; ++j) {
+    const glm::vec2 row = plan.rows == 1 ? uv : uv + plan.across * ((j + 0.5f) / plan.rows - 0.5f);
+    for (float i = 0; i < plan.probes; ++i) {
+      const glm::vec2 at = plan.probes == 1 ? row : row + plan.along * ((i + 0.5f) / plan.probes - 0.5f);
+      const glm::vec4 color = filtered_level(chain, texture, plan.level, at, plan.filter, read);
+      sum += plan.has_next ? color * (1.0f - plan.share) +
+                                 filtered_level(chain, texture, plan.level + 1, at, plan.filter, read) * plan.share
+                           : color;
+    }
   }
-  return plan.probes == 1 ? sum : sum / plan.probes;
+  const float probes = plan.probes * plan.rows;
+  return probes == 1 ? sum : sum / probes;
 }
 template <class Read>
 glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes,

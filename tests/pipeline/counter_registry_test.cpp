@@ -2,8 +2,8 @@
 #include "stages/cost/counter_registry.h"
 
 #include "pipeline/technique_table.h"
-#include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 
 namespace beampipe::counter_registry_test {
@@ -73,15 +73,22 @@ TEST(CounterRegistry, EveryCounterMovesWhereItIsListed) {
   }
 }
 
+// A surface with a material.
+Trace lit_trace() {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0.5, Material{});
+  return scene.trace;
+}
+
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
-  const Trace trace = test_trace();
-  for (const std::string& spec : example_specs()) {
-    History history;
-    for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
-      for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters)
-        for (const float value : values) found[name] += value;
-  }
+  for (const Trace& trace : {test_trace(), lit_trace()})
+    for (const std::string& spec : example_specs()) {
+      History history;
+      for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
+        for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters)
+          for (const float value : values) found[name] += value;
+    }
   for (const PixelCounterInfo& counter : pixel_counters()) {
     EXPECT_GT(found[counter.name], 0.0f) << counter.name;
     found.erase(counter.name);

@@ -1,11 +1,14 @@
 // Materials through the techniques: what must not change, and what all of them must show.
 
+#include <numeric>
+
 #include "pipeline/technique_table.h"
 #include "stages/surface/mip_chain.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/stages/surface_scene.h"
 #include "tests/test.h"
+#include "traces/scenes.h"
 
 namespace beampipe::surfaces_test {
 
@@ -308,6 +311,60 @@ TEST(Surfaces, TranslucentTrianglesAreDrawnOnce) {
     const StageCounters& stage = stage_of(found, "sample_raster");
     EXPECT_GE(stage.items_out, 64u) << spec;
     EXPECT_LE(stage.items_out, 64u + 8u) << spec;  // pixels of the diagonal have a fragment of each half
+  }
+}
+
+double sum_of(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+double squared_error(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
+  return sum;
+}
+
+// Ropes with highlights narrower than a pixel.
+TEST(Surfaces, AdaptiveShadingIsNearlyAsGoodAsSixteenPointsEverywhere) {
+  const Trace trace = make_scene("rigging", {.triangles = 3000, .width = 96, .height = 54});
+  const Image truth = rendered("reference", trace).image;
+  const auto error = [&](const std::string& spec) { return squared_error(rendered(spec, trace).image, truth); };
+  const double once = error("beam:at=visible"), all = error("beam:at=sixteenths");
+  EXPECT_LT(error("beam"), once);
+  EXPECT_LT(error("beam:tolerance=0.01"), all + 0.2 * (once - all));
+}
+
+TEST(Surfaces, AdaptiveShadingIsCountedInEachPixel) {
+  const Trace trace = make_scene("rigging", {.triangles = 3000, .width = 96, .height = 54});
+  double before = 1e30;
+  for (const char* tolerance : {"0", "0.02", "0.2", "1000"}) {
+    const FrameResult found = rendered(std::string("beam:tolerance=") + tolerance, trace);
+    const double shadings = sum_of(found.pixel_counters.at("shadings"));
+    const StageCounters& shade = stage_of(found, "shade");
+    EXPECT_LE(shadings, static_cast<double>(shade.items_in));  // which has flat triangles too
+    EXPECT_GT(shadings, 0.5 * static_cast<double>(shade.items_in));
+    EXPECT_LT(shadings, before) << tolerance;
+    before = shadings;
+  }
+  EXPECT_EQ(before, sum_of(rendered("beam:at=visible", trace).pixel_counters.at("shadings")));
+}
+
+// A checker at an angle, of which a pixel shows parts of several squares. (`taa` and `dvm` shade at one sample of many
+// frames, each of which is another part of the pixel.)
+TEST(Surfaces, EveryTechniqueFiltersFootprints) {
+  SurfaceTrace scene(32, 32);
+  TextureImage image = filled_image(128, 128, {255, 255, 255, 255});
+  for (std::size_t i = 0; i < image.texels.size(); ++i)
+    if ((i / 16 + i / 128 / 16) % 2 == 0) image.texels[i] = {0, 0, 0, 255};
+  scene.add_rectangle(-1, -1, 33, 33, 0.5, textured_material(scene.add_image(image)));
+  for (glm::vec2& uv : scene.mesh().uvs[0]) uv = {0.9f * uv.x + 0.3f * uv.y, 1.7f * uv.y};
+  const Image truth = rendered("reference", scene.trace).image;
+  for (const char* spec : {"beam", "beam:order=stream", "beam:order=sorted", "casav", "alpha", "z3", "msaa:4", "acaa:4",
+                           "deferred", "visibility"}) {
+    const auto error = [&](const char* filter) {
+      const std::string name(spec);
+      return squared_error(rendered(name + (name.find(':') == name.npos ? ':' : ',') + filter, scene.trace).image,
+                           truth);
+    };
+    EXPECT_LT(error("filter=16"), 0.7 * error("filter=sampler")) << spec;
   }
 }
 

@@ -50,23 +50,24 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
-  const std::string of_beam = "; it has bits, pool, at, bin and order";
+  const std::string of_beam = "; it has bits, pool, at, tolerance, alpha, bin, order and filter";
   const std::string of_casav =
       "; it has reading, mask, depths, sort, tiny, overlap, regional, fuzzy, extents, slab, plane, thickness, storage, "
-      "order and layers";
-  const std::string of_dvm = "; it has blend, material, clamp and extra";
+      "order, layers and filter";
+  const std::string of_dvm = "; it has blend, material, clamp, extra and filter";
   const std::map<std::string, std::vector<const char*>> specs_of_error = {
       {names, {"", "wireframe"}},
       {names + " (did you mean 'beam'?)", {"bean", "beam ", "bean:bits=64"}},
-      {"msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, prepass, motion and resolve",
+      {"msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, prepass, motion, resolve and "
+       "filter",
        {"msaa:8,prepas"}},
       {msaa_rates,
        {"msaa", "msaa:", "msaa:3", "msaa:0", "msaa:08", "msaa:-8", "msaa:8x", "msaa:N=8", "msaa:2048", "msaa:prepass",
         "msaa:prepass,8"}},
       {"'8' is there twice", {"msaa:8,8"}},
-      {"msaa:N has no option '16'; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,16"}},
-      {"msaa:N has no option ''; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,"}},
-      {"msaa:N has no option 'N'; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,N=8"}},
+      {"msaa:N has no option '16'; it has color, at, alpha, prepass, motion, resolve and filter", {"msaa:8,16"}},
+      {"msaa:N has no option ''; it has color, at, alpha, prepass, motion, resolve and filter", {"msaa:8,"}},
+      {"msaa:N has no option 'N'; it has color, at, alpha, prepass, motion, resolve and filter", {"msaa:8,N=8"}},
       {"color must be rgb16f, rgba16f, rgba8 or rgba32f", {"msaa:8,color=rgb8", "msaa:8,color"}},
       {"at must be centre or centroid", {"msaa:8,at=corner"}},
       {"'prepass' is there twice", {"msaa:8,prepass,prepass"}},
@@ -75,19 +76,21 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"beam has no option '64'" + of_beam, {"beam:64"}},
       {"beam has no option 'mask'" + of_beam, {"beam:mask=fast"}},
       {"beam has no option 'fuzzy'" + of_beam, {"beam:fuzzy=mix"}},
-      {"beam:order=sorted has no option 'mask'; it has bits, storage, window and order",
+      {"beam:order=sorted has no option 'mask'; it has bits, storage, window, order and filter",
        {"beam:order=sorted,bits=32,mask=exact"}},
       {"bits must be 32 or 256", {"beam:order=sorted,bits=64", "beam:order=sorted,bits="}},
       {"storage must be packed or float32", {"beam:order=sorted,storage=text"}},
       {"storage needs bits=256", {"beam:order=sorted,bits=32,storage=float32"}},
       {"pool must be 0, 16, 24, 30, 40, 50, 60, 80, 96 or 128", {"beam:pool=7"}},
       {"bits must be 32, 64, 128 or 256", {"beam:bits=48,pool=16"}},
+      {"filter must be sampler, 1, 4 or 16", {"beam:filter=2", "msaa:8,filter=", "alpha:filter=yes"}},
+      {"tolerance needs at=adaptive", {"beam:at=visible,tolerance=0.1"}},
       {"beam has no option 'slots'" + of_beam, {"beam:slots=5"}},
       {"'mask' is there twice", {"beam:mask=table,mask=table"}},
       {"order must be near-first, sorted or stream", {"beam:order=primitive"}},
       {"beam has no option 'rules'" + of_beam, {"beam:rules=paper"}},
       {"'order' is there twice", {"beam:order=stream,order=sorted"}},
-      {"beam:order=stream has no option 'pool'; it has order", {"beam:order=stream,pool=16"}},
+      {"beam:order=stream has no option 'pool'; it has order and filter", {"beam:order=stream,pool=16"}},
       {"layers needs order=near-first or order=stream", {"casav:layers=3", "casav:order=sorted,layers=1"}},
       {"sort needs order=sorted", {"casav:order=stream,sort=nearest", "casav:order=near-first,sort=centroid"}},
       {"order must be sorted, near-first or stream", {"casav:order=sort"}},
@@ -97,16 +100,16 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"overlap must be tiny, over, add, unbounded or transition", {"casav:overlap=none"}},
       {"regional must be local or area", {"casav:regional=global"}},
       {"'slab' is there twice", {"casav:slab=visible,slab=full"}},
-      {"z3 has no option 'layers'; it has shape", {"z3:layers=3"}},
+      {"z3 has no option 'layers'; it has shape and filter", {"z3:layers=3"}},
       {"shape must be 32x2, 32x3 or 128x3", {"z3:shape=64x3"}},
-      {"alpha has no options", {"alpha:1"}},
-      {"reference has no option '64'; it has samples and set", {"reference:64"}},
-      {"deferred has no options", {"deferred:"}},
+      {"alpha has no option '1'; it has filter", {"alpha:1"}},
+      {"reference has no option '64'; it has samples, set and filter", {"reference:64"}},
+      {"deferred has no option ''; it has filter", {"deferred:"}},
       {acaa_rates, {"acaa", "acaa:512"}},
       {"double must be none, stencil or saturate", {"acaa:8,double=yes"}},
       {"N of visibility:N must be 1, 2, 4, 8 or 16", {"visibility:3", "visibility:"}},
       {"'4' is there twice", {"visibility:4,4"}},
-      {"visibility:N has no options", {"visibility:4,8"}},
+      {"visibility:N has no option '8'; it has filter", {"visibility:4,8"}},
       {"shading must be visibility, deferred or forward", {"taa:8,shading=backward"}},
       {taa_rates, {"taa", "taa:32"}},
       {"blend must be a number from 0.001 to 1",

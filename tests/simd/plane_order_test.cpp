@@ -141,12 +141,19 @@ TEST(PlaneOrder, PositionSumsAreSumsOfIntegers) {
   const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
   for_positions({32, 64, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
     for (std::size_t i = 0; i < masks.size(); ++i) {
-      std::int32_t x = 0, y = 0;
-      for (std::size_t p = 0; p < 32 * patterns.size(); ++p)
-        if (has(masks[i], p)) x += patterns[p / 32].x[p % 32], y += patterns[p / 32].y[p % 32];
+      std::int32_t x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+      for (std::size_t p = 0; p < 32 * patterns.size(); ++p) {
+        if (!has(masks[i], p)) continue;
+        const std::int32_t px = patterns[p / 32].x[p % 32], py = patterns[p / 32].y[p % 32];
+        x += px, y += py, xx += px * px, xy += px * py, yy += py * py;
+      }
       const PositionSums sums = position_sums(patterns.data(), patterns.size(), masks[i].data());
       ASSERT_EQ(sums.x, x) << i;
       ASSERT_EQ(sums.y, y) << i;
+      const PositionSquares squares = position_squares(patterns.data(), patterns.size(), masks[i].data());
+      ASSERT_EQ(squares.xx, xx) << i;
+      ASSERT_EQ(squares.xy, xy) << i;
+      ASSERT_EQ(squares.yy, yy) << i;
     }
   });
 }

@@ -58,7 +58,7 @@ struct OpenTile {
   // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
     fragments = fragments_in_order<Words>(triangles, list, tile);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, OwnerPlace::covered, observers};
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, {}, observers};
     compose_pooled(bin, {fragments, 0}, composing, PooledTile<Words>{pixels, closed, {counts, merges}, result});
     return finish_pooled(bin, finishing, pixels, result);
   }

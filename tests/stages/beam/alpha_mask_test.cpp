@@ -1,6 +1,8 @@
 // Cutouts and translucency of beams: how much area and which positions are left.
 #include "stages/beam/alpha_mask.h"
 
+#include <map>
+
 #include "stages/surface/opacity.h"
 #include "tests/stages/beam_pixels.h"
 #include "tests/stages/surface_scene.h"
@@ -12,7 +14,7 @@ struct Masked {
   StageCounters counters;
 };
 
-Masked masked(const ShadedScene& scene, int positions = 256) {
+Masked masked(const ShadedScene& scene, int positions = 256, AlphaPlaces places = AlphaPlaces::all) {
   const std::vector<SamplePattern> patterns = cell_patterns(positions);
   const Tile tile = scene.frame_tile();
   BeamFragmentOptions options;
@@ -20,9 +22,12 @@ Masked masked(const ShadedScene& scene, int positions = 256) {
   Masked result;
   result.before = fragments_of(scene.triangles, tile, options);
   result.after = result.before;
-  alpha_mask({scene.shader, tile}, patterns, result.counters, result.after);
+  alpha_mask({scene.shader, tile}, patterns, places, result.counters, result.after);
   return result;
 }
+
+constexpr AlphaPlaces kAllPlaces[] = {AlphaPlaces::one, AlphaPlaces::quarters, AlphaPlaces::sixteenths,
+                                      AlphaPlaces::all};
 
 double area(const std::vector<Fragment>& fragments) {
   double sum = 0;
@@ -56,16 +61,66 @@ TEST(AlphaMask, ACutoutLeavesWhereTheTextureIsOpaque) {
   Material material = textured_material(scene.add_image(image), AlphaMode::mask);
   material.base_texture->wrap_u = Wrap::clamp;
   scene.add_rectangle(0, 0, 8, 8, 0.5, material);
-  for (const Filter filter : {Filter::nearest, Filter::linear}) {
-    scene.trace.materials[0].base_texture->magnify = filter;
-    const Masked found = masked(ShadedScene(scene.trace));
-    EXPECT_NEAR(area(found.after), 32, 1e-4);
-    EXPECT_EQ(positions(found.after), 32 * 256);
-    for (const Fragment& fragment : found.after) EXPECT_LT(fragment.pixel % 8, 4u);
+  for (const AlphaPlaces places : kAllPlaces) {
+    scene.trace.materials[0].alpha_cutoff = 0.5f;
+    for (const Filter filter : {Filter::nearest, Filter::linear}) {
+      scene.trace.materials[0].base_texture->magnify = filter;
+      const Masked found = masked(ShadedScene(scene.trace), 256, places);
+      EXPECT_NEAR(area(found.after), 32, 1e-4);
+      EXPECT_EQ(positions(found.after), 32 * 256);
+      for (const Fragment& fragment : found.after) EXPECT_LT(fragment.pixel % 8, 4u);
+    }
+    // The cutoff moves the border of the linear filter: alpha falls from 1 at u = 1/4 to 0 at u = 3/4.
+    scene.trace.materials[0].alpha_cutoff = 0.75f;
+    EXPECT_NEAR(area(masked(ShadedScene(scene.trace), 256, places).after), 8 * 8 * 0.375, 1e-4);
   }
-  // The cutoff moves the border of the linear filter: alpha falls from 1 at u = 1/4 to 0 at u = 3/4.
-  scene.trace.materials[0].alpha_cutoff = 0.75f;
-  EXPECT_NEAR(area(masked(ShadedScene(scene.trace)).after), 8 * 8 * 0.375, 1e-4);
+}
+
+// Texels of 1 to 3 pixels with any alphas: between four of them, alpha at a position is the same from every place,
+// where these lie between the same texels.
+TEST(AlphaMask, PlacesTellOfAllPositionsAroundThem) {
+  Random random(3);
+  for (const double pixels : {8.0, 24.0}) {
+    SurfaceTrace scene(24, 24);
+    scene.add_rectangle(0, 0, pixels, pixels, 0.5,
+                        textured_material(scene.add_image(random_image(random, 8, 8)), AlphaMode::mask));
+    const ShadedScene shaded(scene.trace);
+    const Masked all = masked(shaded);
+    const auto differing = [&](AlphaPlaces places) {
+      const Masked some = masked(shaded, 256, places);
+      std::map<std::pair<std::uint32_t, std::uint32_t>, WideMask> masks;
+      for (const Fragment& fragment : some.after) masks[{fragment.pixel, fragment.triangle}] = fragment.mask;
+      double sum = 0;
+      for (const Fragment& fragment : all.after) {
+        const WideMask& other = masks[{fragment.pixel, fragment.triangle}];
+        sum += without(fragment.mask, other).count() + without(other, fragment.mask).count();
+      }
+      return sum / positions(all.after);
+    };
+    const double sixteenths = differing(AlphaPlaces::sixteenths), one = differing(AlphaPlaces::one);
+    EXPECT_LT(sixteenths, 0.05) << pixels;
+    EXPECT_LE(sixteenths, one) << pixels;
+    EXPECT_LT(one, 0.4) << pixels;
+  }
+}
+
+// Half of the pixels lie in texels that pass, and half in others: a look-up of four texels for each pixel and triangle.
+TEST(AlphaMask, PixelsThatAreKnownAsAWholeAreLookedUpOnce) {
+  SurfaceTrace scene(64, 64);
+  TextureImage image = filled_image(64, 64, {255, 255, 255, 255});
+  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = i % 64 < 32 ? 255 : 0;
+  scene.add_rectangle(0, 0, 64, 64, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+  scene.trace.materials[0].base_texture->wrap_u = Wrap::clamp;
+  const ShadedScene shaded(scene.trace);
+  const Masked found = masked(shaded);
+  EXPECT_NEAR(area(found.after), 32 * 64, 1e-3);
+  TexelRequests texels(nullptr);
+  StageCounters counters;
+  std::vector<Fragment> fragments = found.before;
+  std::erase_if(fragments,
+                [](const Fragment& fragment) { return std::abs(static_cast<int>(fragment.pixel % 64) - 32) < 4; });
+  alpha_mask({shaded.shader, shaded.frame_tile()}, cell_patterns(256), AlphaPlaces::all, counters, fragments, &texels);
+  EXPECT_EQ(texels.texels(), 4 * counters.items_in);
 }
 
 // Texels far smaller than the distance of positions, every other one opaque: half of everything is left.
@@ -74,12 +129,14 @@ TEST(AlphaMask, FineTexelsLeaveTheirMean) {
   TextureImage image = filled_image(1024, 1024, {255, 255, 255, 0});
   for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = (i + i / 1024) % 2 ? 255 : 0;
   scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
-  const Masked found = masked(ShadedScene(scene.trace));
-  EXPECT_NEAR(area(found.after), 32, 0.15);                // 128 of 255 codes, and filtered borders
-  EXPECT_NEAR(positions(found.after), 32 * 256, 64 + 32);  // one position per pixel, and the same
-  for (const Fragment& fragment : found.after) {
-    if (fragment.pixel % 9 != 0) {  // the triangle covers the whole pixel
-      EXPECT_NEAR(fragment.alpha, fragment.mask.count() / 256.0, 0.01);
+  for (const AlphaPlaces places : kAllPlaces) {
+    const Masked found = masked(ShadedScene(scene.trace), 256, places);
+    EXPECT_NEAR(area(found.after), 32, 0.15);                // 128 of 255 codes, and filtered borders
+    EXPECT_NEAR(positions(found.after), 32 * 256, 64 + 32);  // one position per pixel, and the same
+    for (const Fragment& fragment : found.after) {
+      if (fragment.pixel % 9 != 0) {  // the triangle covers the whole pixel
+        EXPECT_NEAR(fragment.alpha, fragment.mask.count() / 256.0, 0.01);
+      }
     }
   }
 }
@@ -196,16 +253,18 @@ TEST(AlphaMask, AFragmentWithoutPositionsIsASpeck) {
   EXPECT_GT(specks, 1000u);
 }
 
-// One pixel of a translucent rectangle with a texture: an alpha and 256 ranks. One of a cutout: 256 alphas and ranks.
+// One pixel of a translucent rectangle with a texture: an alpha and 256 ranks. One of a cutout: a look-up of the whole
+// pixel, and 256 alphas and ranks.
 TEST(AlphaMask, CountsItsWork) {
   for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
     SurfaceTrace scene(1, 1);
-    scene.add_rectangle(-20, -1, 2, 2, 0.5,
-                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), mode));
+    TextureImage image = filled_image(2, 2, {9, 9, 9, 200});
+    image.texels[0].a = 0;  // one of the four texels that are looked up
+    scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), mode));
     const ShadedScene shaded(scene.trace);
     const Masked found = masked(shaded);
     ASSERT_EQ(found.before.size(), 1u);
-    const std::uint64_t alphas = mode == AlphaMode::mask ? 256 : 1;
+    const std::uint64_t alphas = mode == AlphaMode::mask ? 1 + 256 : 1;
     EXPECT_EQ(found.counters.items_in, 1u);
     EXPECT_EQ(found.counters.items_out, 1u);
     EXPECT_EQ(found.counters.bytes_read, 4 * 8 + 2u + 4);  // the mask, the area as fp16, and the number of the sheet
@@ -217,8 +276,10 @@ TEST(AlphaMask, CountsItsWork) {
     // texture coordinates (2, 4 each) and four slopes of them (2, 3 each); the factor.
     // Besides: eight products and four sums that make the pixel's flip, and two products; the area's factor.
     EXPECT_EQ(found.counters.ops.mul_add, alphas * (8 + 10 + 2 * 2 + 4 * 2 + 1) + 8 + 2 + 1);
-    // A rank is moved and compared; in a cutout alpha is compared and selected, and added.
-    EXPECT_EQ(found.counters.ops.add, alphas * (10 + 6 + 2 * 4 + 4 * 3) + 4 + 256 * (mode == AlphaMode::mask ? 5 : 2));
+    // A rank is moved and compared; in a cutout alpha is compared and selected, and added, and the four texels of the
+    // pixel are compared with 0 and 1.
+    EXPECT_EQ(found.counters.ops.add,
+              alphas * (10 + 6 + 2 * 4 + 4 * 3) + 4 + (mode == AlphaMode::mask ? 256 * 5 + 2 : 256 * 2));
     EXPECT_EQ(found.counters.ops.special, alphas * 2 + (mode == AlphaMode::mask));
   }
 }
@@ -242,8 +303,9 @@ TEST(AlphaMask, SpecksReadNoSheet) {
 TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
   const auto counters = [](float scale) {
     SurfaceTrace scene(1, 1);
-    scene.add_rectangle(-20, -1, 2, 2, 0.5,
-                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), AlphaMode::mask));
+    TextureImage image = filled_image(2, 2, {9, 9, 9, 200});
+    image.texels[0].a = 0;
+    scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
     for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= scale;
     const Masked found = masked(ShadedScene(scene.trace));
     EXPECT_EQ(found.after.size(), 1u);

@@ -466,6 +466,91 @@ TEST(SurfaceShaderCost, OfAnUnlitTexture) {
   EXPECT_EQ(analytic.shader.work(0).input_bytes, kSurfaceBytes + 3 * 2 * 4);
 }
 
+// A rectangle whose normals turn by `turn` to each side, in front of a light beside the eye, which sees its back.
+SurfaceTrace bent(float turn, const Material& material) {
+  SurfaceTrace scene(16, 16);
+  scene.add_rectangle(0, 0, 16, 16, 0.5, material);
+  const glm::vec3 left(std::sin(turn), 0, std::cos(turn)), right(-std::sin(turn), 0, std::cos(turn));
+  scene.mesh().normals = {left, right, right, left};
+  scene.frame().lighting = {{{glm::normalize(glm::vec3(0.3f, 0.1f, 1))}}, std::nullopt};
+  return scene;
+}
+
+// What colours at many points of a pixel differ by.
+float spread(const ShadedScene& shaded, std::int32_t x, std::int32_t y, const Footprint& footprint) {
+  float least = 1e30f, most = 0;
+  for (int i = 0; i < 33; ++i)
+    for (int j = 0; j < 33; ++j) {
+      const ShadingPlace at{x, y, 0.5f + footprint.xx * (static_cast<float>(i) / 32 - 0.5f),
+                            0.5f + footprint.yy * (static_cast<float>(j) / 32 - 0.5f)};
+      const float red = shaded.shader.color(y > x ? 1 : 0, at).r;
+      least = std::min(least, red), most = std::max(most, red);
+    }
+  return most - least;
+}
+
+// Of a metal, which has highlights alone, within a third: the visibility of microfacets and the cosine vary too.
+TEST(SurfaceShader, LightVariesNoMoreThanItsRange) {
+  for (const float turn : {0.2f, 0.8f})
+    for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
+      Material metal;
+      metal.metallic = 1, metal.roughness = roughness;
+      const ShadedScene shaded(bent(turn, metal).trace);
+      double ranges = 0, spreads = 0;
+      for (const float width : {1.0f, 0.25f})
+        for (std::int32_t y = 0; y < 16; ++y)
+          for (std::int32_t x = 0; x < 16; ++x) {
+            if (x == y) continue;  // the triangles' border
+            const float found = spread(shaded, x, y, width);
+            const float range = shaded.shader.light_range(y > x ? 1 : 0, {x, y}, width);
+            EXPECT_LE(found, 4 * range / 3 + 0.02f) << turn << ", " << roughness << ": " << x << ", " << y;
+            ranges += range, spreads += found;
+          }
+      EXPECT_LT(ranges, 4 * spreads + 1) << turn << ", " << roughness;  // and not much less
+    }
+}
+
+TEST(SurfaceShader, LightDoesNotVaryWhereNothingTurns) {
+  Material metal;
+  metal.metallic = 1, metal.roughness = 0.2f;
+  EXPECT_EQ(ShadedScene(bent(0, metal).trace).shader.light_range(0, {8, 2}, 1.0f), 0.0f);
+  EXPECT_EQ(ShadedScene(bent(0.5f, unlit_material(glm::vec4(1))).trace).shader.light_range(0, {8, 2}, 1.0f), 0.0f);
+}
+
+// A texture of normals turns them where the surface is plane; the more of its texels a pixel shows, the more.
+TEST(SurfaceShader, LightVariesWithTexturesOfNormals) {
+  Random random(9);
+  TextureImage image{"normals", 64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i)
+    image.texels.emplace_back(random.integer(96, 160), random.integer(96, 160), 250, 255);
+  Material metal;
+  metal.metallic = 1, metal.roughness = 0.5f;
+  SurfaceTrace scene = bent(0, metal);
+  scene.trace.materials[0].normal_texture = Texture{.image = scene.add_image(image)};
+  double before = 0;
+  for (const float repeats : {0.01f, 0.05f, 0.25f}) {
+    SurfaceTrace scaled_scene = scene;
+    for (glm::vec2& uv : scaled_scene.mesh().uvs[0]) uv *= repeats;
+    const ShadedScene shaded(scaled_scene.trace);
+    double sum = 0;
+    for (std::int32_t x = 1; x < 16; ++x) {
+      TexelRequests texels(nullptr);
+      sum += shaded.shader.light_range(0, {x, 0}, 1.0f, &texels);
+      EXPECT_EQ(texels.texels(), 4u);
+    }
+    EXPECT_GT(sum, 1.2 * before) << repeats;
+    before = sum;
+  }
+}
+
+TEST(SurfaceShaderCost, OfTheRangeOfLight) {
+  const ShadedScene curved(bent(0.5f, Material{}).trace);
+  const OperationCounts range = curved.shader.work(0).range, light = curved.shader.work(0).light;
+  EXPECT_GT(range.total(), light.total());
+  EXPECT_EQ(range.fetch, 0u);
+  EXPECT_EQ(ShadedScene(bent(0.5f, unlit_material(glm::vec4(1))).trace).shader.work(0).range, OperationCounts{});
+}
+
 TEST(SurfaceShaderCost, OfLitVertices) {
   SurfaceTrace scene = facing(white_metal());
   scene.mesh().vertex_colors.assign(4, glm::vec4(0.5f));
