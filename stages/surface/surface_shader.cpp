@@ -358,6 +358,16 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, co
                      });
 }
 
+SurfaceShader::AlphaPlace SurfaceShader::alpha_place(std::uint32_t triangle, const ShadingPlace& place,
+                                                     const Footprint& footprint) const {
+  AlphaPlace found;
+  alpha_there(triangle, place, footprint, [&](const Texture&, const glm::vec2& uv, const TextureSlopes& slopes) {
+    found = {{uv.x, uv.y}, {slopes.dx.x, slopes.dx.y}, {slopes.dy.x, slopes.dy.y}};
+    return 1.0f;
+  });
+  return found;
+}
+
 SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place,
                                                      const Footprint& footprint, TexelRequests* texels) const {
   const float cutoff = alpha_cutoff(triangle);

@@ -109,6 +109,12 @@ class SurfaceShader {
   float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
               TexelRequests* texels = nullptr) const;
 
+  // Where alpha's texture is read, and how that changes over the footprint; 0 without one.
+  struct AlphaPlace {
+    std::array<float, 2> uv{}, right{}, down{};
+  };
+  AlphaPlace alpha_place(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint) const;
+
   // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
   // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have.
   // `footprint`, `texels`: as above.
@@ -273,6 +279,10 @@ class TileShader {
   float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
               TexelRequests* texels = nullptr) const {
     return shader_->alpha(triangle, place(pixel, u, v), footprint, texels);
+  }
+  SurfaceShader::AlphaPlace alpha_place(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                                        const Footprint& footprint) const {
+    return shader_->alpha_place(triangle, place(pixel, u, v), footprint);
   }
   SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
                                         const Footprint& footprint, TexelRequests* texels = nullptr) const {
