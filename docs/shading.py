@@ -73,7 +73,9 @@ def costs(folder):
 def choices(program, folder, scene, specs):
     print_head("technique", "RMSE × 1000", "visibility", "bytes of texels per pixel", "modelled ms, fixed functions",
                "as shaders")
-    for spec, result in compared(program, scene, specs, folder).items():
+    found = compared(program, scene, specs, folder)
+    for spec in specs:
+        result = found[spec]
         print_row(f"`{spec}`", thousandths(result["error"]), thousandths(result["visibility"]),
                   f"{texel_bytes(result):.0f}", *modelled(result))
 

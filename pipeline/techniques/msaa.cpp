@@ -65,7 +65,7 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options, const S
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
   if (options.motion) plan.stages.push_back(StageId::motion);
-  if (options.sorts_translucent) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
+  if (options.sorts_translucent && context.has_blending()) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);
     bin.finish(draw_forward(bin, options, depth_test));

@@ -196,7 +196,7 @@ TEST(Surfaces, SortedMsaaComposesSheetsInAnyOrderOfDraws) {
   scene.add_rectangle(-1, -1, 17, 17, 0.8, unlit_material({0, 0, 1, 0.5f}, AlphaMode::blend));
   scene.add_rectangle(-1, -1, 17, 17, 0.5, unlit_material({0, 1, 0, 1}));
   const glm::vec3 found = mean_color(rendered("msaa:4,blend=sorted", scene.trace).image);
-  EXPECT_NEAR(found.r, 0.5, 1e-3), EXPECT_NEAR(found.g, 0.5, 1e-3), EXPECT_NEAR(found.b, 0, 1e-3);
+  expect_near(found, {0.5, 0.5, 0}, 1e-3);
 }
 
 // Sheets in front of each other in one draw are as independent as those of several draws.

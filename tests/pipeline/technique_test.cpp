@@ -58,16 +58,17 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::map<std::string, std::vector<const char*>> specs_of_error = {
       {names, {"", "wireframe"}},
       {names + " (did you mean 'beam'?)", {"bean", "beam ", "bean:bits=64"}},
-      {"msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, prepass, motion, resolve and "
+      {"msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, blend, prepass, motion, "
+       "resolve and "
        "filter",
        {"msaa:8,prepas"}},
       {msaa_rates,
        {"msaa", "msaa:", "msaa:3", "msaa:0", "msaa:08", "msaa:-8", "msaa:8x", "msaa:N=8", "msaa:2048", "msaa:prepass",
         "msaa:prepass,8"}},
       {"'8' is there twice", {"msaa:8,8"}},
-      {"msaa:N has no option '16'; it has color, at, alpha, prepass, motion, resolve and filter", {"msaa:8,16"}},
-      {"msaa:N has no option ''; it has color, at, alpha, prepass, motion, resolve and filter", {"msaa:8,"}},
-      {"msaa:N has no option 'N'; it has color, at, alpha, prepass, motion, resolve and filter", {"msaa:8,N=8"}},
+      {"msaa:N has no option '16'; it has color, at, alpha, blend, prepass, motion, resolve and filter", {"msaa:8,16"}},
+      {"msaa:N has no option ''; it has color, at, alpha, blend, prepass, motion, resolve and filter", {"msaa:8,"}},
+      {"msaa:N has no option 'N'; it has color, at, alpha, blend, prepass, motion, resolve and filter", {"msaa:8,N=8"}},
       {"color must be rgb16f, rgba16f, rgba8 or rgba32f", {"msaa:8,color=rgb8", "msaa:8,color"}},
       {"at must be centre or centroid", {"msaa:8,at=corner"}},
       {"'prepass' is there twice", {"msaa:8,prepass,prepass"}},

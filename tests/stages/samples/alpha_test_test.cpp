@@ -165,6 +165,17 @@ TEST(AlphaTest, CountsItsWork) {
     expected.add += coverage == AlphaCoverage::test ? 2 : 16;
     EXPECT_EQ(found.counters.ops, expected);
   }
+  // A hash by hand. Squared slopes: 4 products, 3 additions. Cells: 2 additions, a root, a quotient; their power of two
+  // and their share: 3 bits, 1 addition; the finer ones: 1 addition. For each of two sizes: 2 products, 4 limits, 2
+  // integers; three times 6 bits and 2 products, 2 additions; 1 bit, 1 conversion, 1 product. Their mean: 1 product, 2
+  // additions. Its distribution: 5 additions; 3 products, a limit and a quotient; a product, an addition and a
+  // quotient; 5 additions to choose. Then 5 additions for each of 8 samples.
+  OperationCounts expected = OperationCounts{.mul_add = 31, .add = 36, .fetch = 1, .special = 2} * 8;
+  expected += OperationCounts{.mul_add = 27, .add = 33 + 8 * 5, .bit = 41, .special = 4, .convert = 6} * 2;
+  EXPECT_EQ(tested(scene, AlphaCoverage::hashed, {{0, 0, 6, 1, 0xffu}, {0, 1, 1, 1, 0xffu}},
+                   {glm::vec2(0.5f), glm::vec2(0.5f)})
+                .counters.ops,
+            expected);
   const Tested in_one_quad = tested(scene, AlphaCoverage::test, {{0, 0, 6, 1, 0xffu}, {0, 0, 7, 1, 0xffu}},
                                     {glm::vec2(0.5f), glm::vec2(0.5f)});
   EXPECT_EQ(in_one_quad.counters.lanes_issued, 4u);
