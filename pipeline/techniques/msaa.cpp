@@ -180,8 +180,8 @@ TechniqueKind msaa_kind() {
                        "samples, which a hash of the place on the surface chooses, or which are the same for all"),
                 choice(
                     "blend", o.sorts_translucent, {{"ordered", false}, {"sorted", true}},
-                    "translucent triangles: in the order of draws, or after all others, far to near by their nearest "
-                    "depth in the bin"),
+                    "translucent triangles: in the order of draws, or after all others, far to near by the mean depth "
+                    "of their vertices"),
                 flag("prepass", o.prepass,
                      "depth first, so that only visible fragments are shaded; only translucent triangles look "
                      "different: "

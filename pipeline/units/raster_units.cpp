@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <ranges>
 
 #include "pipeline/units/sample_places.h"
 #include "stages/cost/closed_depth_cost.h"
@@ -45,9 +44,9 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
     const auto blended =
         std::ranges::stable_partition(drawn_, [&](std::uint32_t triangle) { return !shader.is_translucent(triangle); });
     const BinStage sorting = bin_.stage(StageId::bin_sort);
-    const OrderedList sorted = bin_sort(bin_.triangles(), {blended.begin(), blended.end()}, bin_.tile, sorting.timed());
+    const TriangleList sorted = sort_far_to_near(bin_.triangles(), {blended.begin(), blended.end()}, sorting.timed());
     sorting.moves_in_l2(2 * kSortPasses * blended.size() * (sizeof(std::uint32_t) + kKeyBytes));
-    std::ranges::copy(sorted.triangles | std::views::reverse, blended.begin());
+    std::ranges::copy(sorted, blended.begin());
     return drawn_;
   }
   drawn_.clear();

@@ -104,7 +104,7 @@ class SampleRasterUnit {
   // Where no depth is tested, nothing is left out.
   void keeps_hidden() { keeps_hidden_ = true; }
 
-  // Draws translucent triangles after all others, far to near by their nearest depth in the bin.
+  // Draws translucent triangles after all others, far to near by the mean depth of their vertices.
   void sorts_translucent() { sorts_translucent_ = true; }
 
   // One geometry pass: calls body(fragments) for each batch of triangles. Leaves out what lies behind the cells that

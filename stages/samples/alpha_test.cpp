@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "stages/samples/alpha_test_cost.h"
-#include "stages/samples/hashed_alpha.h"
+#include "stages/surface/hashed_alpha.h"
 #include "stages/surface/opacity.h"
 
 namespace beampipe {

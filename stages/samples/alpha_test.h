@@ -1,6 +1,6 @@
 // alpha_test: sample fragments -> sample fragments without cutouts.
 //
-// Sources: OpenGL 4.6 core specification, section 17.3.1 (alpha to coverage); stages/samples/hashed_alpha.h.
+// Sources: OpenGL 4.6 core specification, section 17.3.1 (alpha to coverage); stages/surface/hashed_alpha.h.
 #pragma once
 
 #include <glm/glm.hpp>

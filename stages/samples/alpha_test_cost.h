@@ -4,7 +4,7 @@
 #include "stages/cost/counting.h"
 #include "stages/data/sample_fragment.h"
 #include "stages/samples/alpha_test.h"
-#include "stages/samples/hashed_alpha.h"
+#include "stages/surface/hashed_alpha.h"
 
 namespace beampipe {
 

@@ -260,8 +260,9 @@ TEST(Scenes, TexelsAreTheSameEverywhere) {
         for (int channel = 0; channel < 4; ++channel) hash = (hash ^ texel[channel]) * 0x100000001b3u;
   }
   const std::map<std::string_view, std::uint64_t> expected = {
-      {"room", 0x27b7ad02ec6643b2u},  {"rigging", 0xd9eb475cadf09b3u}, {"leaves", 0x4f93e31ee083af0cu},
-      {"bumps", 0xbc474f6dcec898dfu}, {"sheets", 0xa3d6789ef7e40643u}, {"tiles", 0x8e07f6933680af65u}};
+      {"room", 0x27b7ad02ec6643b2u},   {"rigging", 0xd9eb475cadf09b3u}, {"leaves", 0x4f93e31ee083af0cu},
+      {"bumps", 0xbc474f6dcec898dfu},  {"sheets", 0xa3d6789ef7e40643u}, {"tiles", 0x8e07f6933680af65u},
+      {"stairs", 0x104397802d0b1749u}, {"study", 0xd67889639ba5eb07u}};
   EXPECT_EQ(hashes, expected);
 }
 
@@ -317,7 +318,8 @@ TEST(Scenes, RefusesWhatItCannotMake) {
   EXPECT_EQ(
       refusal("ball", {}),
       "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, bars, "
-      "density, stack, room, rigging, leaves, bumps, sheets, tiles, shrubs, library, scaffold, cables, crowd, found "
+      "density, stack, room, rigging, leaves, bumps, sheets, tiles, shrubs, library, scaffold, cables, crowd, stairs, "
+      "study, found "
       "\"ball\"");
   EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
   EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");

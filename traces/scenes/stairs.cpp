@@ -44,7 +44,7 @@ void add_baluster(MeshBuilder& rail, const dvec3& foot, double height, int sides
       true);
 }
 
-std::vector<Mesh> build(const StairsLook& look, double budget) {
+std::vector<Mesh> build(const StairsLook& look, double budget, Random& random) {
   MeshBuilder walls("walls"), floor("floor"), ceiling("ceiling"), steps("steps"), carpet("carpet"), frames("frames"),
       pictures("pictures"), rail("rail");
   const int n = divisions(0.1 * budget, 24, 1);
@@ -75,7 +75,8 @@ std::vector<Mesh> build(const StairsLook& look, double budget) {
   carpet.surface(2, 2 * kSteps, [](double u, double v) { return on_runner(-0.72 + 0.84 * u, v); });
 
   for (int i = 0; i < 5; ++i) {  // a picture every third step
-    const double z = -(3 * i + 0.5) * kTread, y = 3 * i * kRise + 1.5, half = 0.2 + 0.04 * (i % 3);
+    const double z = -(3 * i + 0.5) * kTread, y = 3 * i * kRise + random.uniform(1.45, 1.55),
+                 half = 0.2 + 0.04 * (i % 3);
     frames.finish = look.boards;
     frames.color = {0.45f, 0.30f, 0.12f};
     frames.box({kWallAt, y - half - 0.03, z - half - 0.03}, {kWallAt + 0.025, y + half + 0.03, z + half + 0.03});
@@ -124,7 +125,7 @@ Trace make_stairs(const SceneOptions& options) {
       .paint = {surfaces.add(Material{.name = "paint", .roughness = 0.5f}), 1.0}};
   const Camera camera{
       .eye = {0.1, 1.55, 2.1}, .target = {-0.35, 1.85, -3}, .up = {0, 1, 0}, .fovy_deg = 55, .near = 0.1, .far = 30};
-  const auto build_stairs = [&](double budget, Random&) { return build(look, budget); };
+  const auto build_stairs = [&](double budget, Random& random) { return build(look, budget, random); };
   Trace trace = one_frame(options, camera, build_to_budget(options, 20000, build_stairs));
   add_surfaces(trace, std::move(surfaces), {0.75f, 0.70f, 0.60f},
                {.sky = {0.48f, 0.47f, 0.45f}, .ground = {0.36f, 0.32f, 0.28f}});

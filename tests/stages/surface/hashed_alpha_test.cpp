@@ -1,5 +1,5 @@
 // Thresholds of hashed alpha.
-#include "stages/samples/hashed_alpha.h"
+#include "stages/surface/hashed_alpha.h"
 
 #include <algorithm>
 #include <cmath>
