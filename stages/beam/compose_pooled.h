@@ -31,13 +31,17 @@ namespace beampipe {
 struct PooledMaps {
   std::vector<float>& memory_chunks;  // chunks of the record that were read or written in memory
   std::vector<float>& record_bytes;   // the most that the record has had
+  // Of a frame's pool; of others they may be null.
+  std::vector<float>* refusals = nullptr;     // fragments for which a closed pool had no room
+  std::vector<float>* lost_specks = nullptr;  // how often it lost specks: a new one, or all before
 };
 
 // What was done, beside what is charged.
 struct PooledResult : OwnersResult {
-  std::uint64_t chunks_in_memory = 0;  // chunks of records that were read or written there
-  std::uint64_t collections = 0;       // each has read the words of all pixels
+  ChunkRequests spills;  // to records beyond a pool on chip
   PooledMaps maps;
+  // Each has read the words of all pixels, and written those of these pixels.
+  std::vector<std::vector<std::uint32_t>> collections;
   bool lists_visits = false;        // fill the list that follows
   std::vector<RecordVisit> visits;  // to all records, wherever they lie
   bool lists_claims = false;        // fill the list that follows

@@ -155,6 +155,14 @@ struct PoolClaim {
   std::int32_t chunks = 0;
 };
 
+// Chunks that were read and written in memory.
+struct ChunkRequests {
+  std::uint64_t reads = 0, writes = 0;
+
+  void operator+=(const ChunkRequests& more) { reads += more.reads, writes += more.writes; }
+  std::uint64_t all() const { return reads + writes; }
+};
+
 // One access to the record of a pixel.
 struct RecordVisit {
   std::uint32_t key = 0;     // the number of the triangle in the list for which it was visited
