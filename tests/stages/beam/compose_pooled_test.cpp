@@ -168,7 +168,7 @@ TEST(ComposePooled, ACollectionFinishesPixels) {
   const std::uint32_t first = tile.pixels.records.take(0), second = tile.pixels.records.take(0);
   EXPECT_EQ(first + second, 0u + 1u) << "of the pixel's record and the spare one";
   EXPECT_TRUE(tile.closed.hides(0, 0, -0.99f)) << "nothing can be seen there any more";
-  EXPECT_EQ(tile.result.collections.size(), 2u);
+  EXPECT_EQ(tile.result.collections, (std::vector<std::vector<std::uint32_t>>{{0}, {0}})) << "each writes the pixel";
 }
 
 }  // namespace beampipe::compose_pooled_test
