@@ -81,7 +81,7 @@ Trace lit_trace() {
 }
 
 // So many small parts that a frame's pool runs out, also for small fragments.
-Trace full_trace() { return parts_of_pixels(4, 40, 5); }
+Trace full_trace() { return parts_of_pixels(2, 20, 5); }
 
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
