@@ -1,7 +1,7 @@
 // The beam in streaming order, as immediate-mode hardware works: fragments come in primitive order, without an A-buffer
-// or any memory per fragment. The pixels and the pool of their records lie in memory. Of more than twelve owners of a
-// pixel, two become one. Once the pool is full it is closed: from then on a pixel has no more chunks than it has or, if
-// these are fewer, than two surfaces take, and further surfaces are merged.
+// or any memory per fragment. The pixels and the pool of their records lie in memory. Once the pool is full it is
+// closed: from then on a pixel has no more chunks than it has or, if these are fewer, than two surfaces take, and
+// further surfaces are merged.
 #include <memory>
 
 #include "pipeline/bins/render_bins.h"
@@ -13,8 +13,8 @@
 namespace beampipe {
 namespace {
 
-constexpr int kPositions = 128;  // of the mask
-constexpr std::size_t kWords = kPositions / 32, kOwners = 12;
+constexpr int kPositions = 256;  // of the mask
+constexpr std::size_t kWords = kPositions / 32;
 constexpr int kPoolBytes = 90;  // for each pixel
 
 Framebuffer stream_framebuffer() { return {.surfaces = pooled_pixel_surfaces(kPoolBytes)}; }
@@ -33,9 +33,8 @@ FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t clo
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     bin.triangle_fetches().load_setup();
-    ComposePooledUnit<kWords> compose(
-        bin, owners_bin(bin, positions, bin.list, nullptr),
-        {.bytes_per_pixel = kPoolBytes, .most_owners = kOwners, .of_frame = &pool, .closes_at = closes_at});
+    ComposePooledUnit<kWords> compose(bin, owners_bin(bin, positions, bin.list, nullptr),
+                                      {.bytes_per_pixel = kPoolBytes, .of_frame = &pool, .closes_at = closes_at});
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -68,9 +67,8 @@ TechniqueKind beam_stream_kind() {
   return {.name = "beam",
           .variant = {"order", "stream"},
           .description =
-              "the surfaces of beam with fragments in primitive order: no A-buffer, no sorted bins; 128 positions, "
-              "and the pool lies in memory; of more than twelve surfaces of a pixel two are merged, and of fewer once "
-              "the pool is full",
+              "the surfaces of beam with fragments in primitive order: no A-buffer, no sorted bins; the pool lies in "
+              "memory, and once it is full, surfaces of a pixel are merged",
           .source = "ours",
           .examples = {"beam:order=stream"},
           .texture_taps = 16,

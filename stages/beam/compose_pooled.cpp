@@ -202,7 +202,7 @@ class PooledComposer {
     ++(*result_.maps.refusals)[at_.index];
     if (at_.shape.has_sums) {
       ++(*result_.maps.lost_specks)[at_.index];
-      at_.forget_sums();
+      forget_specks();
     }
     while (!at_.has_room()) make_one_less(number);
   }
@@ -301,6 +301,19 @@ class PooledComposer {
       farthest = std::max(farthest, at_.record.farthest(k));
     }
     closed.close(at_.index, farthest);
+    if (!bin_.watermarks && at_.shape.has_sums && hides_specks(farthest)) forget_specks();
+  }
+
+  // Does a pixel that is closed there hide all specks that it has seen?
+  bool hides_specks(float farthest) {
+    ++work.speck_depths;
+    work.bytes_read += sizeof(PixelSums);
+    return at_.record.head->nearest_speck > farthest;
+  }
+
+  void forget_specks() {
+    if (observer_) observer_->forgets_specks();
+    at_.forget_sums();
   }
 
   // ---- Retire: nothing can hide a surface any more ----
@@ -503,6 +516,10 @@ class PooledComposer {
       return;
     }
     at_.use_sums();
+    if (!bin_.watermarks) {
+      ++work.speck_depths;
+      at_.record.head->nearest_speck = lesser(at_.record.head->nearest_speck, fragment.centroid_z);
+    }
     FixedSum& facing = at_.record.head->sums.specks[fragment.front];
     const std::int32_t opposite = at_.record.head->sums.specks[!fragment.front].units;
     FinalSums<std::int32_t, std::uint32_t> sums = at_.sums();

@@ -8,7 +8,8 @@
 // their bytes are free again. If nothing is final, the two owners of the pixel are merged whose depth planes are
 // closest at the means of the positions that they own. From then on they share a mean colour and one depth plane.
 //
-// Specks own no position. They are added at once, if the owners of the positions next to them do not hide them.
+// Specks own no position. They are added at once, if the owners of the positions next to them do not hide them. Where
+// nothing is final before the end, they are forgotten once surfaces close the pixel in front of all of them.
 //
 // Two estimates of a pixel are kept. The analytic one is far more accurate where visibility is simple, but where
 // hundreds of triangles meet in a pixel, it may be wrong about which specks are seen. Counting positions is never worse

@@ -47,6 +47,7 @@ struct PooledWork {
   std::uint64_t speck_comparisons = 0;
   std::uint64_t specks_seen = 0;                    // some position next to them votes for them
   std::uint64_t specks_added = 0;                   // of these, specks that add to the pixel's area
+  std::uint64_t speck_depths = 0;                   // comparisons with the nearest depth of a pixel's specks
   std::uint64_t finished = 0;                       // pixels that were read at the end
   std::uint64_t limited = 0;                        // pixels whose estimates were compared
   std::uint64_t bytes_read = 0, bytes_written = 0;  // of words and records
@@ -213,9 +214,10 @@ void charge(const PooledWork& work, StageCounters& counters) {
     counters.ops += of_join[states] * work.joins[states];
   // Finished pixels are known by their closed depths, too.
   const std::uint64_t looked_at = work.fragments + work.words_scanned + work.finished;
-  // Whether closed pixels hide something, shares of owners that become final, places in the trace, and which owner is
-  // the farthest one.
-  counters.ops += kOfComparison * (looked_at + work.order_tests + work.planes_compared + work.bounds_found);
+  // Whether closed pixels hide something, shares of owners that become final, places in the trace, which owner is the
+  // farthest one, and which speck the nearest.
+  counters.ops +=
+      kOfComparison * (looked_at + work.order_tests + work.planes_compared + work.bounds_found + work.speck_depths);
   counters.ops += of_meeting * work.masks_tested;
   counters.ops += of_win * (work.wins + work.planes_compared);
   counters.ops += of_claim * work.masks;

@@ -104,6 +104,7 @@ class PixelAtHand {
       owned(k).store(view.owned(k));
     }
     view.head->sums = record.head->sums;
+    view.head->nearest_speck = record.head->nearest_speck;
     pixels_.records.give_back(word_->record_size, word_->number);
     word_->record_size = size;
     word_->number = larger;
@@ -117,6 +118,7 @@ class PixelAtHand {
       work_.bytes_read += sizeof(PixelSums);
     } else {
       record.head->sums = {};
+      record.head->nearest_speck = kNoDepth;
       shape.has_sums = true;
     }
   }

@@ -66,10 +66,12 @@ struct OpenTile {
     spills_of_composing = result.spills;
     return finish_pooled(bin, finishing, pixels, result);
   }
+  // Without watermarks that move on, nothing is final before the end.
   std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {
     StageCounters ignored;
-    const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
-    return compose(ordered.triangles, with_watermarks ? &ordered.watermarks : nullptr);
+    OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
+    if (!with_watermarks) ordered.watermarks.assign(ordered.triangles.size(), kInFront);
+    return compose(ordered.triangles, &ordered.watermarks);
   }
 };
 

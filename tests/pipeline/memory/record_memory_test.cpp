@@ -48,18 +48,18 @@ TEST(FramePool, IsFullWhenItHasTooFewChunks) {
   EXPECT_EQ(full_at({{{5, 1}, {6, 1}, {6, -1}}, {{5, 1}}}), 6u);
 }
 
-// Numbers of chunks have 23 bits. Of two chunks a pixel, 1920 x 1080 pixels leave 2^23 - 4,147,200 = 4,241,408; twice
-// as many pixels would need more than there are.
+// Numbers of chunks have 24 bits. Of three chunks a pixel, 2560 x 1440 pixels leave 2^24 - 11,059,200 = 5,718,016; 2^24
+// / 3 = 5,592,405 pixels have no more than those.
 TEST(FramePool, HasNoMoreChunksThanNumbersCanName) {
   const auto full_at = [](std::int32_t chunks) {
-    FramePool pool(1920 * 1080, 90, 2);
+    FramePool pool(2560 * 1440, 90, 3);
     pool.add({{5, chunks}});
     return pool.full_at();
   };
-  EXPECT_EQ(full_at(4'241'408), ~0u);
-  EXPECT_EQ(full_at(4'241'409), 5u);
-  EXPECT_NO_THROW(FramePool(1u << 22, 90, 2));
-  EXPECT_THROW(FramePool((1u << 22) + 1, 90, 2), std::runtime_error);
+  EXPECT_EQ(full_at(5'718'016), ~0u);
+  EXPECT_EQ(full_at(5'718'017), 5u);
+  EXPECT_NO_THROW(FramePool(5'592'405, 90, 3));
+  EXPECT_THROW(FramePool(5'592'406, 90, 3), std::runtime_error);
 }
 
 // Every pixel is full of triangles that are smaller than it. With the pool closed, the picture is what fewer surfaces a

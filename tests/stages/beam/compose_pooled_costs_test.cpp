@@ -238,6 +238,7 @@ TEST(PooledCosts, Steps) {
       {"a comparison of a speck", &Work::speck_comparisons, kSpeckTest},
       {"a speck that is seen", &Work::specks_seen, kSpeckSeen},
       {"a speck that is added", &Work::specks_added, kSpeckAdded},
+      {"a depth of specks", &Work::speck_depths, kComparison},
       {"a word at the end, with its closed depth", &Work::finished, kComparison, 4 + 6},
       {"a limit", &Work::limited, kLimit},
   };
@@ -318,11 +319,12 @@ TEST(PooledCosts, SurfacesOfAPixel) {
   add_left_of(triangles, 128, -0.75f);
   add_right_of(triangles, 192, -0.8f);
   add_everywhere(triangles, -0.9f);
-  add_triangle(triangles, {50, 50, -0.85f}, {56, 50, -0.85f}, {50, 56, -0.85f});  // a speck
+  add_triangle(triangles, {50, 50, -0.84f}, {56, 50, -0.84f}, {50, 56, -0.84f});  // a speck
   add_right_of(triangles, 128, -0.85f);
   add_triangle(triangles, {128, -20'000, -0.25f}, {10'128, 20'000, -0.15f}, {-9'872, 20'000, -0.35f});  // slanted
   add_left_of(triangles, 128, -0.25f);
-  const std::vector<glm::vec3> colors(8, kRed);
+  add_left_of(triangles, 128, -0.88f);
+  const std::vector<glm::vec3> colors(9, kRed);
   const std::vector<Happening> happenings = {
       {"a surface: the word alone", {}, 0, {kComparison, kWhole, kWord}},
       {"the first fragment of an untouched pixel: what is empty and the surface take one plane and a slot, three "
@@ -398,11 +400,39 @@ TEST(PooledCosts, SurfacesOfAPixel) {
              {kBounds, 1},
              {kVertices, 1}}),
         kWhole + 2 * kBitPlane + 6 * kLink + 3 * kOwner + kBoundedOwner, kLink + kWord}},
-      {"a speck in front of three: six words of planes; the owners of three positions; a chunk for the sums",
+      {"a speck in front of three: six words of planes; the owners of three positions; a chunk for the sums, where "
+       "nothing "
+       "is final, with the nearest depth",
        {0, 1, 2},
        4,
-       {sum({{kComparison, 1}, {votes(2), 1}, {kPlane, 3}, {kSpeckTest, 3}, {kSpeckSeen, 1}, {kSpeckAdded, 1}}),
+       {sum({{kComparison, 1},
+             {votes(2), 1},
+             {kPlane, 3},
+             {kSpeckTest, 3},
+             {kSpeckSeen, 1},
+             {kComparison, 1},
+             {kSpeckAdded, 1}}),
         kPartial + 6 * 4 + 6 * kLink + 3 * kOwner + kLink, kLink + kSums + kWord}},
+      {"a speck that is hidden when a fragment closes the pixel nearer: the sums are given back, and a slot moves",
+       {0, 5, 4},
+       8,
+       {sum({{kComparison, 1},
+             {split(1), 1},
+             {kMeeting, 2},
+             {kPlane, 1},
+             {kContest, 1},
+             {kWin, 1},
+             {kClaim, 1},
+             {kCount, 1},
+             {kSlot, 1},
+             {kTake, 1},
+             {kPlane, 2},
+             {kBounds, 2},
+             {kVertices, 2},
+             {kComparison, 1},
+             {join(kTwoStates), 1}}),
+        kPartial + kBitPlane + 4 * kLink + kOwner + kSlotBytes + 2 * kBoundedOwner + kSums,
+        kSlotBytes + kLink + kBitPlane + kSlotBytes + kWord}},
       {"a partition: a slanted surface through another one",
        {0},
        6,

@@ -154,6 +154,32 @@ TEST(ComposePooled, AClosedPoolRefusesAThirdSurfaceAndSpecks) {
   EXPECT_EQ(compose({3, 1}), (std::vector<float>{1, 1, 0})) << "its sum is the third beside a plane and a slot";
 }
 
+// In streaming order a speck may be hidden later: by a triangle that covers the pixel, or by two halves. What closes
+// the pixel behind it, or leaves a part open, does not hide it.
+TEST(ComposePooled, SpecksThatAreHiddenLaterAreForgotten) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.2f);
+  add_triangle(triangles, {50, 50, -0.5f}, {56, 50, -0.5f}, {50, 56, -0.5f});
+  add_everywhere(triangles, -0.9f);
+  add_left_of(triangles, 128, -0.8f);
+  add_right_of(triangles, 128, -0.8f);
+  add_right_of(triangles, 128, -0.4f);
+  const std::vector<glm::vec3> colors{kRed, kGreen, kRed, kRed, kRed, kRed};
+  const auto green = [&](const TriangleList& list) {
+    OpenTile<8> tile(triangles, colors);
+    return tile.compose(list).at(0).color.g;
+  };
+  const float seen = green({0, 1});
+  EXPECT_NEAR(seen, 18.0 / 65536, 1.01 / FixedSum::kUnits);
+  EXPECT_EQ(green({0, 1, 2}), 0);
+  EXPECT_EQ(green({0, 1, 3, 4}), 0);
+  EXPECT_GT(green({0, 1, 3, 5}), 0.9f * seen);
+  EXPECT_GT(green({0, 1, 3}), 0.9f * seen);
+  OpenTile<8> tile(triangles, colors);
+  tile.compose({0, 1, 2});
+  EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::covered) << "the record is free again";
+}
+
 TEST(ComposePooled, ACollectionFinishesPixels) {
   SetupTriangles triangles;
   add_left_of(triangles, 128, -0.9f);
