@@ -24,8 +24,9 @@ inline std::vector<Surface> pooled_pixel_surfaces(int pool_bytes) {
 
 struct RecordPool {
   int bytes_per_pixel;
-  FramePool* of_frame = nullptr;  // in memory; null: the bin's, on chip
-  std::uint32_t closes_at = ~0u;  // as PooledPixels::closes_at
+  std::size_t most_owners = kMostOwners;  // of a pixel
+  FramePool* of_frame = nullptr;          // in memory; null: the bin's, on chip
+  std::uint32_t closes_at = ~0u;          // as PooledPixels::closes_at
 };
 
 template <std::size_t Words>
@@ -38,9 +39,10 @@ class ComposePooledUnit {
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pooled_maps_{bin.pixel_counter("memory_chunks"), bin.pixel_counter("record_bytes")},
         frame_pool_(pool.of_frame),
-        pixels_(bin.tile.pixels(), pool.of_frame
-                                       ? ChunkPool::of_frame(least_chunks(Words))
-                                       : ChunkPool(bin.tile.pixels() * static_cast<std::size_t>(pool.bytes_per_pixel))),
+        pixels_(bin.tile.pixels(),
+                pool.of_frame ? ChunkPool::of_frame(least_chunks(Words))
+                              : ChunkPool(bin.tile.pixels() * static_cast<std::size_t>(pool.bytes_per_pixel)),
+                pool.most_owners),
         words_(bin, pooled_pixel_surfaces(0)),
         records_(bin.memory(), kRecordPool, bin.tile.pixels(),
                  {most_chunks(Words), kChunkBytes + pixels_.pool.link_bytes()}) {
