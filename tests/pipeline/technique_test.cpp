@@ -90,7 +90,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"order must be near-first, sorted or stream", {"beam:order=primitive"}},
       {"beam has no option 'rules'" + of_beam, {"beam:rules=paper"}},
       {"'order' is there twice", {"beam:order=stream,order=sorted"}},
-      {"beam:order=stream has no option 'pool'; it has order, bits and filter", {"beam:order=stream,pool=16"}},
+      {"beam:order=stream has no option 'pool'; it has bits, order and filter", {"beam:order=stream,pool=16"}},
       {"layers needs order=near-first or order=stream", {"casav:layers=3", "casav:order=sorted,layers=1"}},
       {"sort needs order=sorted", {"casav:order=stream,sort=nearest", "casav:order=near-first,sort=centroid"}},
       {"order must be sorted, near-first or stream", {"casav:order=sort"}},
