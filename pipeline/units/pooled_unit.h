@@ -120,7 +120,7 @@ class ComposePooledUnit {
       bin_.triangle_fetches().depth(fetch.triangle, stage_.counters, fetch.has_vertices);
     for (const RecordVisit& visit : result.visits) records_.access(visit, stage_.counters);
     spills_ += result.spills;
-    shade.visible(result.shaded);
+    shade.visible(result.shaded, result.decisions);
   }
 
   Bin& bin_;

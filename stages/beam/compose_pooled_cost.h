@@ -33,8 +33,6 @@ struct PooledWork {
   std::uint64_t finality_tests = 0;                    // of owners, against the watermark
   std::uint64_t farthest_found = 0;                    // farthest depths over an owner's positions
   std::uint64_t measured = 0;                          // owners whose mean position was found
-  std::uint64_t sided = 0;                             // of these, with the sides of their area
-  OperationCounts ranges{};                            // what it costs to find how far light may vary
   std::uint64_t pairs_compared = 0;                    // of owners
   std::uint64_t ties = 0;                              // of these pairs, with the least loss so far
   std::uint64_t merges = 0;                            // of two owners
@@ -185,6 +183,12 @@ inline OperationCounts added_speck() {
 
 }  // namespace pooled_costs
 
+// Of a footprint: the squares of its positions, summed up, and its sides.
+inline OperationCounts footprint_cost(std::size_t words) {
+  OperationCounts cost = OperationCounts{.mul_add = 3} * (32 * words);
+  return cost += pooled_costs::sides();
+}
+
 template <std::size_t Words>
 void charge(const PooledWork& work, StageCounters& counters) {
   constexpr std::uint64_t kPositions = 32 * Words;
@@ -195,8 +199,8 @@ void charge(const PooledWork& work, StageCounters& counters) {
                                      of_votes = by_size(6, speck_votes_cost);
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
-                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_sides = sides(),
-                        of_pair = pair_cost(), of_tie = tie(), of_merge = merge(Words), of_fraction = fraction(),
+                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_pair = pair_cost(),
+                        of_tie = tie(), of_merge = merge(Words), of_fraction = fraction(),
                         of_retirement = retirement(Words), of_bounds = plane_bounds_cost(),
                         of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(),
                         of_seen_speck = seen_speck(), of_added_speck = added_speck(), of_limit = limit_cost();
@@ -204,8 +208,7 @@ void charge(const PooledWork& work, StageCounters& counters) {
                         of_win = of_masks(Words, [](const CountedMask&mask) { with_won(mask, mask, mask); }),
                         of_claim = of_masks(Words, [](const CountedMask&mask) { claim_of(mask, mask, mask).none(); }),
                         of_take = of_masks(Words, [](CountedMask mask) { take_from(mask, mask); });
-  constexpr OperationCounts kOfComparison{.add = 1}, kOfPosition{.add = 2},  // its x and y
-      kOfSquares{.mul_add = 3};                                              // of these
+  constexpr OperationCounts kOfComparison{.add = 1}, kOfPosition{.add = 2};  // its x and y
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
@@ -232,9 +235,6 @@ void charge(const PooledWork& work, StageCounters& counters) {
   counters.ops += of_farthest * work.farthest_found;
   counters.ops += kOfPosition * (kPositions * work.measured);
   counters.ops += of_mean * work.measured;
-  counters.ops += kOfSquares * (kPositions * work.sided);
-  counters.ops += of_sides * work.sided;
-  counters.ops += work.ranges;
   counters.ops += of_pair * work.pairs_compared;
   counters.ops += of_tie * work.ties;
   counters.ops += of_merge * work.merges;

@@ -48,6 +48,7 @@ struct DepthFetch {
 // What was done, beside what is charged.
 struct OwnersResult {
   std::vector<ShadedTriangle> shaded;  // once for each time that one was shaded
+  OperationCounts decisions{};         // of the shader: the sides of footprints, and how far light may vary there
   std::vector<DepthFetch> fetched;
   std::vector<float>* shadings = nullptr;  // by pixel, how often surfaces that are not flat were shaded; or null
   TexelRequests* texels = nullptr;         // where shading adds a request of each invocation; null: nowhere

@@ -34,8 +34,9 @@ inline FootprintSides footprint_sides(const TextureSlopes& slopes, const glm::ve
   return {along / size, across / size, std::sqrt(glm::dot(along, along)), std::sqrt(glm::dot(across, across))};
 }
 
-// The distance of taps in texels of their level, at most. Bilinear taps at this distance leave no gaps.
-inline constexpr float kTapDistance = 2.0f;
+// The distance of taps in texels of their level, at most. At two texels, bilinear taps between texels would read each
+// second one alone.
+inline constexpr float kTapDistance = 1.0f;
 
 // How much wider than the side of a footprint its taps lie so that they have the second moment of the side. The
 // texels of a level and the bilinear filter between them have blurred the image already. `side`: in texels of the

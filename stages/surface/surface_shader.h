@@ -56,6 +56,8 @@ enum class MaterialStorage { none, gbuffer };
 // pixel, and what is left of their errors is visibility.
 enum class SurfaceColors { by_place, by_pixel };
 
+inline constexpr int kAnisotropic = -1;
+
 // How a technique shades.
 struct ShadingRules {
   Derivatives derivatives = Derivatives::analytic;
@@ -63,7 +65,7 @@ struct ShadingRules {
   AccumulatorFormat stored_as = AccumulatorFormat::fp32;  // colours are rounded to it
   SurfaceColors colors = SurfaceColors::by_place;
   // Textures are means over footprints of at most so many taps: 1, 4 or 16 (stages/surface/footprint_filter.h). 0: as
-  // samplers ask for.
+  // samplers ask for; kAnisotropic: by trilinear samplers with an anisotropy of 16, whatever they ask for.
   int texture_taps = 0;
   bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };
