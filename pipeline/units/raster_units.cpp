@@ -41,12 +41,12 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
   const SurfaceShader& shader = bin_.context.shader;
   if (sorts_translucent_) {
     drawn_ = bin_.list;
-    const auto blended =
-        std::ranges::stable_partition(drawn_, [&](std::uint32_t triangle) { return !shader.is_translucent(triangle); });
+    const auto first = std::stable_partition(drawn_.begin(), drawn_.end(),
+                                             [&](std::uint32_t triangle) { return !shader.is_translucent(triangle); });
+    const TriangleList blended(first, drawn_.end());
     const BinStage sorting = bin_.stage(StageId::bin_sort);
-    const TriangleList sorted = sort_far_to_near(bin_.triangles(), {blended.begin(), blended.end()}, sorting.timed());
+    std::ranges::copy(sort_far_to_near(bin_.triangles(), blended, sorting.timed()), first);
     sorting.moves_in_l2(2 * kSortPasses * blended.size() * (sizeof(std::uint32_t) + kKeyBytes));
-    std::ranges::copy(sorted, blended.begin());
     return drawn_;
   }
   drawn_.clear();
