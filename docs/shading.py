@@ -17,9 +17,10 @@ import sys
 from measure import make, print_head, print_row, results, stages
 
 SCENES = ["room", "rigging", "leaves", "bumps", "sheets", "tiles", "stairs", "study"]
-SPECS = ["beam", "beam:at=covered,filter=sampler", "beam:at=sixteenths,filter=sampler", "msaa:8", "msaa:8,filter=16",
-         "msaa:32", "msaa:32,filter=16", "msaa:256"]
-TIMED = ["beam", "msaa:8", "msaa:32", "msaa:256"]
+SPECS = ["beam", "beam:filter=sampler", "beam:at=sixteenths,filter=sampler", "msaa:8", "msaa:8,filter=anisotropic",
+         "msaa:32", "msaa:32,filter=anisotropic", "msaa:32,filter=16", "msaa:256", "msaa:256,filter=anisotropic"]
+ONCE = "beam:at=visible"
+TIMED = ["beam", "msaa:8", "msaa:32", "msaa:32,filter=anisotropic", "msaa:256"]
 PIXELS = 320 * 180
 
 
@@ -61,12 +62,14 @@ def errors(folder):
 
 
 def costs(folder):
-    print_head("scene", "shadings per pixel", "÷ `at=covered`", "bytes of texels per pixel", "÷ `msaa:32`",
+    print_head("scene", "shadings per pixel", "÷ `at=visible`", "bytes of texels per pixel", "÷ `msaa:32`",
+               "÷ `msaa:32,filter=anisotropic`",
                *(f"`{spec}`, ms" for spec in TIMED))
     for scene, found in measured(folder):
-        beam, covered, of_msaa = (found[spec] for spec in ("beam", "beam:at=covered,filter=sampler", "msaa:32"))
-        print_row(f"`{scene}`", f"{shadings(beam):.1f}", f"{shadings(beam) / shadings(covered):.2f}",
-                  f"{texel_bytes(beam):.0f}", f"{texel_bytes(beam) / texel_bytes(of_msaa):.2f}",
+        beam, once = found["beam"], found[ONCE]
+        print_row(f"`{scene}`", f"{shadings(beam):.1f}", f"{shadings(beam) / shadings(once):.2f}",
+                  f"{texel_bytes(beam):.0f}",
+                  *(f"{texel_bytes(beam) / texel_bytes(found[spec]):.2f}" for spec in TIMED[2:4]),
                   *(" / ".join(dict.fromkeys(modelled(found[spec]))) for spec in TIMED))
 
 
@@ -83,7 +86,7 @@ def choices(program, folder, scene, specs):
 match sys.argv[1:]:
     case ["measure", program, "-o", folder, *models]:
         for what in SCENES + models:
-            compared(program, what, SPECS, pathlib.Path(folder))
+            compared(program, what, SPECS + [ONCE], pathlib.Path(folder))
     case ["errors", folder]:
         errors(pathlib.Path(folder))
     case ["costs", folder]:
@@ -95,6 +98,6 @@ match sys.argv[1:]:
                  for alpha in ("", ",alpha=sample", ",alpha=hashed", ",alpha=coverage")])
     case ["translucency", program, "-o", folder]:
         choices(program, pathlib.Path(folder), "sheets",
-                ["beam"] + [f"msaa:{samples}{blend}" for samples in (8, 256) for blend in ("", ",blend=sorted")])
+                ["beam"] + [f"msaa:{samples}{blend}" for samples in (8, 32, 256) for blend in ("", ",blend=sorted")])
     case _:
         sys.exit(__doc__.strip())

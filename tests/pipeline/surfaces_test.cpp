@@ -346,6 +346,15 @@ double squared_error(const Image& a, const Image& b) {
   return sum;
 }
 
+// Whether once is enough is asked in the shader, where fixed functions take time too.
+TEST(Surfaces, TheShaderPaysForItsDecisions) {
+  const Trace trace = make_scene("bumps", {.triangles = 1000, .width = 48, .height = 27});
+  const FrameResult asked = rendered("beam:tolerance=1000", trace), once = rendered("beam:at=visible", trace);
+  EXPECT_EQ(stage_of(asked, "shade").items_in, stage_of(once, "shade").items_in);
+  EXPECT_GT(stage_of(asked, "shade").ops.total(), 15 * stage_of(once, "shade").ops.total() / 10);
+  EXPECT_LE(stage_of(asked, "compose").ops.total(), stage_of(once, "compose").ops.total());
+}
+
 // Ropes with highlights narrower than a pixel.
 TEST(Surfaces, AdaptiveShadingIsNearlyAsGoodAsSixteenPointsEverywhere) {
   const Trace trace = make_scene("rigging", {.triangles = 3000, .width = 96, .height = 54});

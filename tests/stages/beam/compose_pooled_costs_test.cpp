@@ -225,7 +225,6 @@ TEST(PooledCosts, Steps) {
       {"a test against the watermark", &Work::finality_tests, kFinality},
       {"a farthest depth", &Work::farthest_found, kFarthest, 0, kPositions},
       {"a mean position", &Work::measured, kMean},
-      {"the sides of an area", &Work::sided, kSides},
       {"a pair", &Work::pairs_compared, kPair},
       {"a tie", &Work::ties, kTie},
       {"a merge", &Work::merges, kMerge},
@@ -253,6 +252,8 @@ TEST(PooledCosts, Steps) {
     EXPECT_EQ(counters.position_tests, step.tests) << step.name;
   }
 }
+
+TEST(PooledCosts, AFootprint) { expect_operations(footprint_cost(kWords), kSides, "the sides of an area"); }
 
 TEST(PooledCosts, StepsThatDependOnPlanesAndStates) {
   const auto charged = [](const PooledWork& work) {
