@@ -258,8 +258,6 @@ Float what_is_left(Float cover, Float open, const Correlation<Float, Mask>& how)
   switch (how.rule) {
     case MergeRules::Overlap::over:
       return independent;
-    case MergeRules::Overlap::add:
-      return added;
     case MergeRules::Overlap::transition:
       return added + (independent - added) * how.fuzziness;
     case MergeRules::Overlap::tiny:

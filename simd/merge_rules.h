@@ -10,7 +10,6 @@ struct MergeRules {
   enum class Overlap {
     tiny,        // specks lie beside what is there (ADD), all others are independent (OVER): section 2.2.1
     over,        // all are independent: the formulas of section 2.2 alone
-    add,         // all lie beside each other as far as there is room: the other end of slide 12's transition
     unbounded,   // as `tiny`, but what lies behind a speck keeps all of its area, even where both together exceed the
                  // region: not in the text
     transition,  // slide 12: from ADD to OVER by a fuzziness of |M_A|, alpha_A and "sadp(A, B)", see merge-inl.h
@@ -31,7 +30,7 @@ struct MergeRules {
             // that of both together in every other region where they overlap, by `overlap`
     delta,  // b_i + b_a is the region's coverage as well. In the middle of a slab, two halves become a half. Specks
             // have the factors of section 2.2.1, as in front of the slab.
-    mix,  // interpolate by Delta from the fragment over to the fragment under the aggregate: not in the text
+    mix,    // interpolate by Delta from the fragment over to the fragment under the aggregate: not in the text
   } fuzzy = Fuzzy::unite;
 
   // Where the slab ends at a position, for the depth partition and for Delta.

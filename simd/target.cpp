@@ -43,6 +43,4 @@ void use_simd_target(const std::string& name) {
   throw std::invalid_argument("expected an instruction set that this machine has, found \"" + name + "\"");
 }
 
-void use_best_simd_target() { choose(0); }
-
 }  // namespace beampipe

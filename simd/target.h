@@ -17,7 +17,4 @@ std::string simd_target();
 // unless simd_targets() contains the name.
 void use_simd_target(const std::string& name);
 
-// Goes back to the best one.
-void use_best_simd_target();
-
 }  // namespace beampipe

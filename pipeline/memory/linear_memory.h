@@ -22,24 +22,29 @@ struct ArrayName {
   std::uint16_t number(const MemorySystem& memory) const { return memory.tally ? memory.tally->array(name) : 0; }
 };
 
-// Reads or writes `bytes` in a row: whole sectors, each moved once, of an array from its sector `first` on. `number`:
-// that of the array.
-inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint16_t number,
-                   std::uint64_t bytes, StageCounters& counters, std::uint64_t first = 0) {
+struct ArrayPart {
+  ArrayName array;
+  std::uint16_t number;     // array.number()
+  std::uint64_t first = 0;  // sector
+};
+
+// Reads or writes `bytes` in a row: whole sectors, each moved once.
+inline void stream_part(const MemorySystem& memory, DramAccess access, const ArrayPart& part, std::uint64_t bytes,
+                        StageCounters& counters) {
   if (!memory.modelled) return;
   const std::uint64_t sectors = memory.sectors(bytes);
   counters.sector_bytes += sectors * memory.sector_bytes;
   counters.l2_bytes += sectors * memory.sector_bytes;
   counters.dram_bytes += sectors * memory.sector_bytes;
-  if (memory.tally) memory.tally->add(number, access, counters.stage, sectors * memory.sector_bytes);
+  if (memory.tally) memory.tally->add(part.number, access, counters.stage, sectors * memory.sector_bytes);
   if (memory.log)
-    memory.log->add(memory.log->array(array.name, array.of_bins), access, first, static_cast<std::uint32_t>(sectors),
-                    counters.stage);
+    memory.log->add(memory.log->array(part.array.name, part.array.of_bins), access, part.first,
+                    static_cast<std::uint32_t>(sectors), counters.stage);
 }
 
 inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint64_t bytes,
                    StageCounters& counters) {
-  stream(memory, access, array, array.number(memory), bytes, counters);
+  stream_part(memory, access, {array, array.number(memory)}, bytes, counters);
 }
 
 // The same, if L2 holds them all.
@@ -62,7 +67,8 @@ class RecordsInOrder {
     const std::uint64_t first = std::max(begin >> std::countr_zero(memory_.sector_bytes), read_to_);
     const std::uint64_t end_sector = memory_.sectors(end);
     if (end_sector <= first) return;
-    stream(memory_, DramAccess::read, array_, number_, (end_sector - first) * memory_.sector_bytes, counters, first);
+    stream_part(memory_, DramAccess::read, {array_, number_, first}, (end_sector - first) * memory_.sector_bytes,
+                counters);
     read_to_ = end_sector;
   }
 

@@ -251,10 +251,9 @@ SpecOptions casav_options(CasavOptions& o) {
       choice("overlap", o.merge.overlap,
              {{"tiny", R::Overlap::tiny},
               {"over", R::Overlap::over},
-              {"add", R::Overlap::add},
               {"unbounded", R::Overlap::unbounded},
               {"transition", R::Overlap::transition}},
-             "how coverages combine where masks overlap: ADD for small fragments and OVER for others, OVER, ADD, as "
+             "how coverages combine where masks overlap: ADD for small fragments and OVER for others, OVER, as "
              "tiny but so that a small fragment takes nothing from what lies behind it, or a transition from ADD to "
              "OVER"),
       choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
@@ -281,7 +280,7 @@ SpecOptions casav_options(CasavOptions& o) {
              "order of fragments: sorted in an A-buffer, near to far from sorted bins, or primitive order"),
       beside(
           "order=near-first or order=stream", [&o] { return o.order != CasavOrder::sorted; },
-          choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
+          choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"8", 8}},
                  "aggregates that a pixel keeps without an A-buffer"))};
 }
 

@@ -60,7 +60,7 @@ TechniqueKind reference_kind() {
               ReferencePattern{},
               [](ReferencePattern& pattern) -> SpecOptions {
                 return {choice("samples", pattern.columns, {{"4096", 16}, {"16384", 32}}, "samples per pixel"),
-                        choice("set", pattern.set, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}},
+                        choice("set", pattern.set, {{"1", 1}, {"2", 2}},
                                "places of the samples; the sets are independent of each other")};
               },
               [](const ReferencePattern& pattern) {

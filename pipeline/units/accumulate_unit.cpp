@@ -55,7 +55,7 @@ void AccumulateUnit::blend_translucent(DepthTestUnit& depth_test, const Sampling
   raster.pass(central, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
     count_by_pixel(fragments, bin_.tile, central.grid, bin_.pixel_counter("fragments"));
     blend({bin_.triangles(), bin_.tile, central}, bin_.shader(), {fragments, places.of(fragments)},
-          depth_test.surface(), sample, blending.timed(), accumulator_, accesses);
+          {depth_test.surface(), sample, accesses}, blending.timed(), accumulator_);
     depth_test.read_depths(accesses, blending);
     std::size_t left = 0;
     for (std::size_t i = 0; i < fragments.size(); ++i) {

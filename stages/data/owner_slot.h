@@ -62,10 +62,6 @@ class OwnerSlot {
   void set(std::uint32_t number, float error, std::uint32_t covered, float u, float v) {
     *this = OwnerSlot(words_of(number, error, covered, u, v));
   }
-  void set_merged(std::uint32_t number, float error, const glm::vec3& color, float threshold) {
-    const float channels[] = {color[0], color[1], color[2]};
-    *this = OwnerSlot(words_of_merged(number, error, channels, threshold));
-  }
 
  private:
   static constexpr float kErrorUnits = 32.0f, kLargestError = 127.0f;

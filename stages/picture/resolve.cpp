@@ -1,5 +1,6 @@
 #include "stages/picture/resolve.h"
 
+#include "stages/cost/charge_resolve.h"
 #include "stages/picture/picture_formulas.h"
 #include "stages/picture/resolve_cost.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "simd/population_count.h"
+#include "stages/cost/charge_resolve.h"
 #include "stages/samples/accumulate_cost.h"
 #include "stages/samples/sample_formulas.h"
 
@@ -80,7 +81,8 @@ std::vector<glm::vec4> resolve(const Accumulator& accumulator, const glm::vec3& 
     PixelObserver* const observer = observer_at(accumulator.observers, i);
     if (observer && sum.a < 1) observer->adds(kNobody, 1.0f - sum.a, background);
   }
-  charge_accumulator_resolve(image.size(), accumulator, counters);
+  charge_resolve(image.size(), accumulator_bytes(accumulator.format), image.size(), accumulator_resolve_cost(),
+                 counters);
   return image;
 }
 

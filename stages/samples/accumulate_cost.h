@@ -67,14 +67,4 @@ inline void charge_stencil_test(std::uint64_t tested, std::uint64_t passed, Stag
   counters.lanes_issued += tested;
 }
 
-inline void charge_accumulator_resolve(std::uint64_t pixels, const Accumulator& accumulator, StageCounters& counters) {
-  counters.items_in += pixels;
-  counters.items_out += pixels;
-  counters.ops += accumulator_resolve_cost() * pixels;
-  counters.bytes_read += pixels * accumulator_bytes(accumulator.format);
-  counters.bytes_written += pixels * kColorBytes;
-  counters.lanes_used += pixels;
-  counters.lanes_issued += pixels;
-}
-
 }  // namespace beampipe

@@ -56,8 +56,8 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
 }
 
 void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,
-           const SampleTile& depth, std::size_t sample, StageCounters& counters, Accumulator& accumulator,
-           std::vector<SampleAccess>& accesses) {
+           const DepthsOfOneSample& tested, StageCounters& counters, Accumulator& accumulator) {
+  const auto& [depth, sample, accesses] = tested;
   const SamplePattern& pattern = in.sampling.pattern;
   const std::uint32_t bit = 1u << sample;
   SampleCounts counts{fragments.list.size(), 0};

@@ -22,11 +22,16 @@ struct PlacedFragments {
 void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,
            StageCounters& counters, SampleTile& surface, std::vector<SampleAccess>& accesses);
 
+// Depths, of which one sample of each pixel is read.
+struct DepthsOfOneSample {
+  const SampleTile& depth;
+  std::size_t sample;
+  std::vector<SampleAccess>& accesses;  // replaced
+};
+
 // The same for an accumulator that has all that is opaque: fragments are tested at one sample of the pixel and, if that
-// passes, go over the whole of it. in.sampling: this sample alone; `sample`: its number in `depth`. Accesses are those
-// of `depth`.
+// passes, go over the whole of it. in.sampling: this sample alone.
 void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,
-           const SampleTile& depth, std::size_t sample, StageCounters& counters, Accumulator& accumulator,
-           std::vector<SampleAccess>& accesses);
+           const DepthsOfOneSample& tested, StageCounters& counters, Accumulator& accumulator);
 
 }  // namespace beampipe

@@ -72,9 +72,9 @@ glm::vec4 mean_color(const glm::vec4 colors[], const float weights[], int sample
 
 }  // namespace
 
-void dilate(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, const glm::vec3& background,
-            const Tile& tile, StageCounters& counters, CurrentFrame& frame, std::uint32_t room) {
-  const ShadedSamples samples(quads, draws, background);
+void dilate(const ShadedQuads& in, const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
+  const QuadFrame& quads = in.quads;
+  const ShadedSamples samples(quads, in.draws, in.background);
   DilateWork work;
   for (std::int32_t top = tile.y0; top < tile.y1; top += 2) {
     for (std::int32_t left = tile.x0; left < tile.x1; left += 2) {
@@ -90,7 +90,7 @@ void dilate(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, con
       for (int p = 0; p < 4; ++p) add(samples.at(left + p % 2, top + p / 2), quad.mask[p], false, p);
       for (const ExtraSample& extra : quad.extras) add(samples.extra(extra), extra.mask, true, extra.location / 8);
       work.extras += quad.extras.size();
-      work.ends += quad.extras.size() < room;
+      work.ends += quad.extras.size() < in.room;
       for (int p = 0; p < 4; ++p) {
         const std::int32_t x = left + p % 2, y = top + p / 2;
         if (x >= tile.x1 || y >= tile.y1) continue;

@@ -13,12 +13,18 @@
 
 namespace beampipe {
 
-// Sets color, low, high and known of the tile's pixels. `draws`: one per triangle. The box of a shading
-// sample spans those of the 3x3 shading samples around it that belong to the same draw; around the pixel of an extra
-// sample, these are the nine that pixels store. `room`: for extra samples in a quad. If none of a pixel's visibility
-// samples was given to a shading sample, the pixel takes the colour of its own shading sample, and `known` is 0.
-void dilate(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, const glm::vec3& background,
-            const Tile& tile, StageCounters& counters, CurrentFrame& frame, std::uint32_t room = 0);
+struct ShadedQuads {
+  const QuadFrame& quads;
+  const std::vector<std::uint32_t>& draws;  // one per triangle
+  const glm::vec3& background;
+  std::uint32_t room = 0;  // for extra samples in a quad
+};
+
+// Sets color, low, high and known of the tile's pixels. The box of a shading sample spans those of the 3x3 shading
+// samples around it that belong to the same draw; around the pixel of an extra sample, these are the nine that pixels
+// store. If none of a pixel's visibility samples was given to a shading sample, the pixel takes the colour of its own
+// shading sample, and `known` is 0.
+void dilate(const ShadedQuads& in, const Tile& tile, StageCounters& counters, CurrentFrame& frame);
 
 // Per pixel, the part of it whose material has no shading sample in the quad, 0..1.
 std::vector<float> unknown_part(const CurrentFrame& frame);

@@ -98,7 +98,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"casav has no option 'bits'" + of_casav, {"casav:bits=64"}},
       {"mask must be table or exact", {"casav:mask=fast"}},
       {"tiny must be 1 or 3", {"casav:tiny=2"}},
-      {"overlap must be tiny, over, add, unbounded or transition", {"casav:overlap=none"}},
+      {"overlap must be tiny, over, unbounded or transition", {"casav:overlap=none"}},
       {"regional must be local or area", {"casav:regional=global"}},
       {"'slab' is there twice", {"casav:slab=visible,slab=full"}},
       {"z3 has no option 'layers'; it has shape and filter", {"z3:layers=3"}},

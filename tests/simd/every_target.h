@@ -10,7 +10,7 @@ namespace beampipe {
 template <class Check>
 void on_every_target(Check&& check) {
   struct Restore {
-    ~Restore() { use_best_simd_target(); }
+    ~Restore() { use_simd_target(simd_targets().front()); }
   } restore;
   for (const std::string& target : simd_targets()) {
     SCOPED_TRACE(target);

@@ -55,7 +55,6 @@ inline std::vector<MergeRules> every_merge_rule() {
   using R = MergeRules;
   return {{},
           {.overlap = R::Overlap::over},
-          {.overlap = R::Overlap::add},
           {.overlap = R::Overlap::unbounded},
           {.overlap = R::Overlap::transition},
           {.fuzzy = R::Fuzzy::delta},

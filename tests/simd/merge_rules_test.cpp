@@ -411,7 +411,6 @@ TEST(MergeRules, OverlapIsIndependentOrBeside) {
   for (const bool front_last : {true, false}) {
     const Aggregate &in = front_last ? front : back, &old = front_last ? back : front;
     EXPECT_FLOAT_EQ(merged_tiny(in, old, {.overlap = Overlap::over}).alpha, 0.25f + 0.375f);
-    EXPECT_FLOAT_EQ(merged(in, old, {.overlap = Overlap::add}).alpha, 0.75f);
     EXPECT_FLOAT_EQ(merged_tiny(in, old, {.overlap = Overlap::tiny}).alpha, 0.75f);
     EXPECT_FLOAT_EQ(merged(in, old, {.overlap = Overlap::tiny}).alpha, 0.625f);
   }

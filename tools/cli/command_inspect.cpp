@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 
+#include "pipeline/spec.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
@@ -42,9 +43,7 @@ Examples:
   beampipe inspect fence.json --worst 3 -t beam -o worst.svg      (the three worst pixels as a picture)
   beampipe inspect fence.json --pixel 160,90 -t beam --json
 
-Techniques: beam and casav in every order, alpha, z3, msaa, acaa, visibility and deferred can be inspected.
-
-)";
+Techniques: )";
 
 struct InspectArguments {
   std::string trace, output;
@@ -155,7 +154,7 @@ void add_inspect_command(CommandLine& line, InterruptGate& gate) {
   command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
-  command.footer(kInspectFooter);
+  command.footer(kInspectFooter + list_of(inspectable_names(), "and") + " can be inspected.\n\n");
   command.set_work([arguments, &gate] { run_inspection(*arguments, gate); });
 }
 

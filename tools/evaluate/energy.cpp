@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/modelled_time.h"
 
 namespace beampipe {
@@ -29,7 +30,7 @@ bool runs_on_shaders(const Implementation& implementation, StageId stage) {
   const auto units = implementation.units.find(stage);
   return units != implementation.units.end() &&
          std::any_of(units->second.begin(), units->second.end(),
-                     [](const std::string& unit) { return unit == "shader" || unit == "shading"; });
+                     [](const std::string& unit) { return info_of_unit(unit).kind == HardwareUnit::Kind::shader; });
 }
 
 using Count = std::uint64_t;

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "tools/evaluate/hardware_text.h"
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/memory_system.h"
 #include "traces/closest_name.h"
 #include "traces/files/input_file.h"
@@ -25,20 +26,24 @@ Form<ShadingCost> cost_form() {
                 "Registers that an invocation takes; the fewer fit, the less latency they hide.");
 }
 
-bool is_shader(const std::string& unit) { return unit == "shader" || unit == "shading"; }
-
-bool is_fixed_function(const std::string& unit) {
-  for (const char* const each :
-       {"raster", "conservative_raster", "mask_generator", "sorter", "composer", "rop_samples", "rop_fragments"})
-    if (unit == each) return true;
+// May the stage name the unit? The counters of other stages would say nothing to it.
+bool can_do(HardwareUnit::Kind unit, const StageInfo& stage) {
+  switch (unit) {
+    case HardwareUnit::Kind::fixed_function:
+      return stage.can_be_fixed_function;
+    case HardwareUnit::Kind::shader:
+      return stage.can_be_shader;
+    case HardwareUnit::Kind::beside:
+      return true;
+    case HardwareUnit::Kind::implied:
+      break;
+  }
   return false;
 }
 
-// May the stage name the unit? The counters of other stages would say nothing to it. Textures and the rates of
-// triangles, quads and exports serve both kinds of stages, and L2 and DRAM all of them, named or not.
-bool can_do(const std::string& unit, const StageInfo& stage) {
-  if (unit == "l2" || unit == "dram" || unit == "latency") return false;
-  return is_shader(unit) ? stage.can_be_shader : !is_fixed_function(unit) || stage.can_be_fixed_function;
+bool does_work(const std::string& unit) {
+  const HardwareUnit::Kind kind = info_of_unit(unit).kind;
+  return kind == HardwareUnit::Kind::fixed_function || kind == HardwareUnit::Kind::shader;
 }
 
 // Work of a stage without units would cost nothing, and so would that of a mistyped name. A depth pre-pass runs on the
@@ -46,16 +51,15 @@ bool can_do(const std::string& unit, const StageInfo& stage) {
 Form<UnitsOfStages> units_form() {
   ObjectForm<UnitsOfStages> object("the name of a stage");
   for (const StageInfo& stage : stage_list()) {
-    if (stage.id == StageId::reference_raster) continue;
+    if (!stage.can_be_fixed_function && !stage.can_be_shader) continue;
     std::vector<std::string> names;
-    for (const std::string& name : unit_names())
-      if (can_do(name, stage)) names.push_back(name);
+    for (const HardwareUnit& unit : hardware_units())
+      if (can_do(unit.kind, stage)) names.emplace_back(unit.name);
     const Form<std::vector<std::string>> list = form::list(form::one_of(names), "unit");
     object.add({std::string(stage.name), "The units that it uses.", true, list.schema,
                 [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) {
                   list.read(at, of[id]);
-                  if (std::none_of(of[id].begin(), of[id].end(),
-                                   [](const auto& unit) { return is_shader(unit) || is_fixed_function(unit); }))
+                  if (std::none_of(of[id].begin(), of[id].end(), does_work))
                     at.fail("a unit that does the work of the stage");
                 }});
   }

@@ -85,8 +85,4 @@ std::string label_of(const std::string& named);
 // The same hardware with these costs, in its `json` too.
 Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light);
 
-// The units that a description may name, with "l2" and "dram", which every stage uses, and "latency", which follows
-// from "shader" and "shading".
-std::vector<std::string> unit_names();
-
 }  // namespace beampipe

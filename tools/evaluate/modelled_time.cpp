@@ -8,128 +8,10 @@
 #include <tuple>
 #include <utility>
 
+#include "tools/evaluate/hardware_units.h"
+
 namespace beampipe {
 namespace {
-
-constexpr const char *kL2 = "l2", *kDram = "dram", *kExport = "export", *kLatency = "latency";
-
-// The rates of all cores together, and of the other units.
-class Rates {
- public:
-  explicit Rates(const Hardware& hardware) : rates_(hardware.rates), cores_(hardware.memory.cores) {}
-
-  double at(const char* rate) const { return rates_.at(rate); }
-  double of_cores(const char* rate) const { return cores_ * rates_.at(rate); }
-
- private:
-  const std::map<std::string, double>& rates_;
-  double cores_;
-};
-
-struct StageWork : StageCounters {
-  bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
-  double threads = 1;           // in flight, of all cores
-  double sector_bytes = kLeastSectorBytes;
-};
-
-// The clocks that a unit needs for the work of a stage.
-using Clocks = std::function<double(const Rates& rates, const StageWork& stage)>;
-
-constexpr double kProbeBytes = 16;  // a bilinear probe: four texels of 4 bytes
-
-double over(double work, double rate) { return work / rate; }
-
-// Operations on 64-bit integers are in the integer lanes, and issued twice. All that a shader reads and writes, except
-// for texels, passes its core's L1 or shared memory.
-double shader_clocks(const Rates& rates, const StageWork& s) {
-  const auto& ops = s.ops;
-  const double wide = static_cast<double>(ops.wide), total = static_cast<double>(ops.total());
-  const double mul_add = static_cast<double>(ops.mul_add), add = static_cast<double>(ops.add);
-  const double narrow = mul_add + add > 0 ? std::max(1 - wide / (mul_add + add), 0.0) : 0;
-  return std::max(
-      {over(total + wide, rates.of_cores("core_issue_per_clk")),
-       narrow * (over(mul_add, rates.of_cores("core_mul_add_per_clk")) + over(add, rates.of_cores("core_add_per_clk"))),
-       over(ops.bit, rates.of_cores("core_bit_per_clk")) + over(wide, rates.of_cores("core_wide_per_clk")),
-       over(ops.fetch, rates.of_cores("core_fetch_per_clk")), over(ops.special, rates.of_cores("core_special_per_clk")),
-       over(ops.convert, rates.of_cores("core_convert_per_clk")),
-       over(s.logical_bytes() - s.texture_bytes, rates.of_cores("core_on_chip_bytes_per_clk"))});
-}
-
-// A thread waits for each of its operations and loads, and four threads together for a sector. Threads in flight wait
-// at the same time.
-double latency_clocks(const Rates& rates, const StageWork& s) {
-  const auto operations = static_cast<double>(s.ops.total() + s.ops.wide - s.ops.fetch);
-  const double loads = static_cast<double>(s.ops.fetch) + static_cast<double>(s.texture_bytes) / kProbeBytes;
-  const double from_dram = std::min(static_cast<double>(s.dram_bytes), static_cast<double>(s.l2_bytes));
-  const double from_l2 = static_cast<double>(s.l2_bytes) - from_dram;
-  return (operations * rates.at("operation_clocks") + loads * rates.at("fetch_clocks") +
-          4 / s.sector_bytes * (from_l2 * rates.at("l2_clocks") + from_dram * rates.at("dram_clocks"))) /
-         s.threads;
-}
-
-// What is read and written where pixels are, by bytes of the formats: through the ROP's caches, or in the memory of the
-// cores.
-double pixel_clocks(const Rates& rates, const StageWork& s) {
-  return over(s.logical_bytes(),
-              s.pixels_on_chip ? rates.of_cores("core_on_chip_bytes_per_clk") : rates.at("rop_bytes_per_clk"));
-}
-
-const std::map<std::string, Clocks>& units() {
-  static const std::map<std::string, Clocks> all = {
-      {"triangles",
-       [](const Rates& rates, const StageWork& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
-      {"raster",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("triangles_per_clk")),
-                         over(s.items_out, rates.at("raster_pixels_per_clk")));
-       }},
-      {"conservative_raster",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("triangles_per_clk")),
-                         over(s.lanes_used, rates.at("conservative_pixels_per_clk")));  // with hidden pixels
-       }},
-      {"quads",
-       [](const Rates& rates, const StageWork& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
-      {kExport,
-       [](const Rates& rates, const StageWork& s) { return over(s.bytes_written, rates.at("export_bytes_per_clk")); }},
-      {kLatency, latency_clocks},
-      {"shader", shader_clocks},
-      {"shading", shader_clocks},
-      {"texture",
-       [](const Rates& rates, const StageWork& s) {
-         return over(s.texture_bytes, rates.of_cores("core_texture_bytes_per_clk"));
-       }},
-      {"mask_generator",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("conservative_pixels_per_clk")),
-                         over(s.position_tests, rates.at("mask_positions_per_clk")));
-       }},
-      {"sorter",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")),
-                         over(s.ops.total(), rates.at("sort_operations_per_clk")));
-       }},
-      {"composer",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max({over(s.items_in, rates.at("rop_fragments_per_clk")),
-                          over(s.position_tests, rates.at("compose_positions_per_clk")), pixel_clocks(rates, s)});
-       }},
-      {"rop_samples",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("rop_samples_per_clk")), pixel_clocks(rates, s));
-       }},
-      {"rop_fragments",
-       [](const Rates& rates, const StageWork& s) {
-         return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")), pixel_clocks(rates, s));
-       }},
-      {"l2", [](const Rates& rates, const StageWork& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
-      {"dram",
-       [](const Rates& rates, const StageWork& s) {
-         return over(s.dram_bytes, rates.at("dram_bytes_per_clk") * rates.at("dram_efficiency"));
-       }},
-  };
-  return all;
-}
 
 // The counters of a stage that shades, with the costs that come to its materials' own. Lighting is a stage of its own
 // in some techniques. `registers`: that an invocation takes.
@@ -210,7 +92,9 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   const Rates rates(hardware);
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
   std::map<std::string, double> times;
-  const auto use = [&](const std::string& unit) { times[unit] = units().at(unit)(rates, stage) / clocks_per_ms; };
+  const auto use = [&](const std::string& unit) {
+    times[unit] = info_of_unit(unit).clocks(rates, stage) / clocks_per_ms;
+  };
   if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
     for (const std::string& unit : found->second) use(unit);
   if (!frame.has_rops) times.erase(kExport);
@@ -224,9 +108,7 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
 
 // Does the implementation do any of these stages in ROPs? What `resolve` reads has been there before.
 bool has_rops(const Implementation& implementation, const std::vector<StageCounters>& stages) {
-  const auto is_rop = [](const std::string& unit) {
-    return unit == "rop_samples" || unit == "rop_fragments" || unit == "composer";
-  };
+  const auto is_rop = [](const std::string& unit) { return info_of_unit(unit).is_rop; };
   return std::any_of(stages.begin(), stages.end(), [&](const StageCounters& stage) {
     const auto found = implementation.units.find(stage.stage.id);
     return stage.stage.id != StageId::resolve && found != implementation.units.end() &&
@@ -245,9 +127,6 @@ std::pair<std::string, double> busiest_of(const std::map<std::string, double>& t
   return most;
 }
 
-// Units of which each core has its own.
-bool is_of_cores(const std::string& unit) { return unit == "shader" || unit == "texture" || unit == kLatency; }
-
 // Times of bins on cores: the sums over stages of what units of cores and shared ones do, and of what a core needs for
 // its part of the bins, if all that it holds do their stages one after the other.
 struct BinTimes {
@@ -257,8 +136,8 @@ struct BinTimes {
   void add(const std::map<std::string, double>& stage, double bins_held, double cores) {
     double alone = 0;  // all bins one by one on each core: latency is that of one bin's threads, shared units are free
     for (const auto& [unit, ms] : stage) {
-      (is_of_cores(unit) ? of_cores : shared)[unit] += ms;
-      alone = std::max(alone, unit == kLatency ? ms * bins_held : is_of_cores(unit) ? ms : ms / cores);
+      (info_of_unit(unit).is_of_cores ? of_cores : shared)[unit] += ms;
+      alone = std::max(alone, unit == kLatency ? ms * bins_held : info_of_unit(unit).is_of_cores ? ms : ms / cores);
     }
     stages_in_turn_ms += alone / bins_held;
   }
@@ -285,12 +164,6 @@ double of_busiest_core(const std::vector<double>& bins, std::uint32_t cores) {
 }
 
 }  // namespace
-
-std::vector<std::string> unit_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, clocks] : units()) names.push_back(name);
-  return names;
-}
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage, const BinSize& bin, double bins) {

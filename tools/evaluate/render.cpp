@@ -115,17 +115,6 @@ std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, 
   return histories;
 }
 
-FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
-                        WallTime* time) {
-  const bool model = plan.options.memory.modelled;
-  TimedResult timed = render_timed(plan, {.technique = technique, .frame = frame, .models_memory = model}, progress);
-  if (time) {
-    *time = wall_time({timed.milliseconds});
-    time->with_memory_model = model;
-  }
-  return std::move(timed.result);
-}
-
 namespace {
 
 KeptPicture kept_or_rendered(const Rendering& run, const RunPlan& plan, Progress& progress) {

@@ -33,12 +33,9 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
 std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress,
                                        SurfaceColors colors = SurfaceColors::by_place);
 
-// Renders a frame once with one technique. If `time` is not null, it becomes the time that this took.
-FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
-                        WallTime* time = nullptr);
-
-// The same, from the plan's kept pictures if it is there; otherwise it is kept. Of a technique without history and
-// without pixel counters. The time is that of the rendering.
+// Renders a frame once with one technique, or takes it from the plan's kept pictures if it is there; otherwise it is
+// kept. Of a technique without history and without pixel counters. If `time` is not null, it becomes the time that the
+// rendering took.
 FrameResult render_kept(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
 Image kept_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,

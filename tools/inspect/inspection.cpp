@@ -60,6 +60,8 @@ std::vector<PixelHistory> observed(const Technique& technique, const Trace& trac
   return histories;
 }
 
+}  // namespace
+
 std::vector<std::string> inspectable_names() {
   std::vector<std::string> names;
   for (const TechniqueKind& kind : technique_kinds())
@@ -67,8 +69,6 @@ std::vector<std::string> inspectable_names() {
       names.push_back(kind.name);
   return names;
 }
-
-}  // namespace
 
 void require_inspectable(const Technique& technique) {
   if (technique.is_observable) return;

@@ -33,6 +33,9 @@ struct PixelInspection {
   std::vector<double> causes;              // of the error, or of the visibility error, in the order of kErrorCauses
 };
 
+// The techniques that can be inspected, in the order of technique_kinds().
+std::vector<std::string> inspectable_names();
+
 // Throws SpecError unless it is observable.
 void require_inspectable(const Technique& technique);
 

@@ -12,6 +12,11 @@
 
 namespace beampipe::owner_slot_test {
 
+OwnerSlot merged_slot(std::uint32_t number, float error, const glm::vec3& color, float threshold) {
+  const float channels[] = {color[0], color[1], color[2]};
+  return OwnerSlot(OwnerSlot::words_of_merged(number, error, channels, threshold));
+}
+
 TEST(OwnerSlot, ASlotKeepsItsTriangleAndItsCentroid) {
   OwnerSlot slot;
   EXPECT_TRUE(slot.is_free());
@@ -39,7 +44,7 @@ TEST(OwnerSlot, ASlotKeepsItsTriangleAndItsCentroid) {
 
 TEST(OwnerSlot, AMergedSlotKeepsAColour) {
   OwnerSlot slot;
-  slot.set_merged(OwnerSlot::kMostTriangles - 1, 3.5f, {1.0f, 0.5f, 0.25f}, 0.5f);
+  slot = merged_slot(OwnerSlot::kMostTriangles - 1, 3.5f, {1.0f, 0.5f, 0.25f}, 0.5f);
   EXPECT_TRUE(slot.is_merged());
   EXPECT_FALSE(slot.is_free());
   EXPECT_EQ(slot.triangle(), OwnerSlot::kMostTriangles - 1);
@@ -47,7 +52,7 @@ TEST(OwnerSlot, AMergedSlotKeepsAColour) {
   EXPECT_EQ(slot.color(), glm::vec3(1.0f, 0.5f, 0.25f));
   slot.set(3, 0, 5, 0, 0);
   EXPECT_FALSE(slot.is_merged());
-  slot.set_merged(3, 0, {0, 0, 0}, 0.5f);
+  slot = merged_slot(3, 0, {0, 0, 0}, 0.5f);
   EXPECT_EQ(slot.color(), glm::vec3(0.0f));
   slot.clear();
   EXPECT_TRUE(slot.is_free());
@@ -61,7 +66,11 @@ TEST(OwnerSlot, TheErrorOfASlotIsRoundedAndLimited) {
   constexpr float kMost = 127.0f / 32;
   OwnerSlot slot;
   const auto stored = [&](float error, bool merged) {
-    merged ? slot.set_merged(12345, error, glm::vec3(1.0f), 0.5f) : slot.set(12345, error, 10, 0.5f, 0.5f);
+    if (merged) {
+      slot = merged_slot(12345, error, glm::vec3(1.0f), 0.5f);
+    } else {
+      slot.set(12345, error, 10, 0.5f, 0.5f);
+    }
     EXPECT_EQ(slot.triangle(), 12345u) << error;
     EXPECT_EQ(slot.is_merged(), merged) << error;
     return slot.error();

@@ -19,7 +19,7 @@ CurrentFrame dilated(QuadFrame quads, std::uint32_t width, std::uint32_t height)
   CurrentFrame frame(width, height);
   StageCounters counters;
   const Tile all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
-  dilate(quads, kDraws, kBackground, all, counters, frame);
+  dilate({quads, kDraws, kBackground}, all, counters, frame);
   return frame;
 }
 
@@ -73,7 +73,7 @@ TEST(Dilate, ExtraSamplesCountAsTheOthersDo) {
 TEST(Dilate, CountsWhatItLooksAt) {
   CurrentFrame frame(4, 4);
   StageCounters counters;
-  dilate(QuadFrame(4, 4), kDraws, kBackground, {0, 0, 4, 4}, counters, frame);
+  dilate({QuadFrame(4, 4), kDraws, kBackground}, {0, 0, 4, 4}, counters, frame);
   const std::uint64_t neighbors = 4 * 3 + 8 * 5 + 4 * 8;  // corners, sides, inside
   EXPECT_EQ(counters.bytes_read, 16 * (6 + 4 + 4) + neighbors * (6 + 4));
   EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));
@@ -94,7 +94,7 @@ TEST(Dilate, CountsWhatItLooksAt) {
   quads.quads[0].extras = {{kNoTriangle, 0, 0, {}}};
   const StageCounters without = counters;
   counters = {};
-  dilate(quads, kDraws, kBackground, {0, 0, 4, 4}, counters, frame, 1);
+  dilate({quads, kDraws, kBackground, 1}, {0, 0, 4, 4}, counters, frame);
   EXPECT_EQ(counters.bytes_read - without.bytes_read, 14u + 4 * (6 + 4) + 3 * 4);
   // Each of the quad's four pixels has another mask and count, one more in their sum, and a term more in twelve means.
   const OperationCounts term{.mul_add = 12, .add = 1 + 12, .bit = 2, .convert = 1};

@@ -77,7 +77,7 @@ class TemporalTwins : public SceneTwins {
   CurrentFrame current_frame() {
     StageCounters ignored;
     CurrentFrame frame(trace_.frames[0].width, trace_.frames[0].height);
-    dilate(quads_, triangles_.draws, trace_.frames[0].background, tile_, ignored, frame);
+    dilate({quads_, triangles_.draws, trace_.frames[0].background}, tile_, ignored, frame);
     frame.motion = motion(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, ignored);
     PixelContents found = contents(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, looks_, ignored);
     frame.looks = std::move(found.looks), frame.speeds = std::move(found.speeds);
@@ -214,7 +214,7 @@ TEST_P(TemporalTwins, Dilate) {
   }
   CurrentFrame found(trace_.frames[0].width, trace_.frames[0].height);
   StageCounters counters;
-  dilate(quads_, triangles_.draws, trace_.frames[0].background, tile_, counters, found);
+  dilate({quads_, triangles_.draws, trace_.frames[0].background}, tile_, counters, found);
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
     const std::size_t first = i - static_cast<std::size_t>(x % 2 + y % 2 * width);

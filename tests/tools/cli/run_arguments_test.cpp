@@ -26,7 +26,7 @@ TEST(FrameRange, RefusesEverythingElse) {
 
 TEST(ExpandSpecs, SplitsListsOfMsaaRatesOnly) {
   EXPECT_EQ(expand_specs({"beam", "msaa:1,8,32", "alpha"}), (Specs{"beam", "msaa:1", "msaa:8", "msaa:32", "alpha"}));
-  EXPECT_EQ(expand_specs({"casav:layers=4"}), Specs{"casav:layers=4"});
+  EXPECT_EQ(expand_specs({"casav:layers=8"}), Specs{"casav:layers=8"});
   EXPECT_EQ(expand_specs({"msaa:8,x"}), Specs{"msaa:8,x"});
   EXPECT_EQ(expand_specs({"msaa:1,,2"}), (Specs{"msaa:1", "msaa:", "msaa:2"}));  // the empty rate is rejected later
 }

@@ -98,7 +98,7 @@ TEST(PictureCache, ChangesNothingInAFrame) {
   plan.options.threads = 1;
   Progress silent(false);
   const Technique reference = parse_technique(kReferenceSpec);
-  const FrameResult rendered = render_once(reference, plan, 0, silent);
+  const FrameResult rendered = render_kept(reference, plan, 0, silent);  // nothing is kept yet
   plan.pictures = std::make_shared<PictureCache>(folder / "cache", plan.trace);
   for (const char* const which : {"first", "kept"}) {
     const FrameResult found = render_kept(reference, plan, 0, silent);
