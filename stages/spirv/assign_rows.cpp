@@ -252,6 +252,8 @@ LaneProgram assign_rows(Draft draft) {
   program.registers = most_alive(lives, values);
 
   const auto rename = [&](Row& row) { row = numbers[row]; };
+  for (auto* interface : {&program.inputs, &program.outputs})
+    for (InterfaceRow& part : *interface) rename(part.row);
   for (DraftBlock& block : draft.blocks) {
     LaneBlock made{.first_op = static_cast<std::uint32_t>(program.ops.size()),
                    .ops = static_cast<std::uint32_t>(block.ops.size()),
