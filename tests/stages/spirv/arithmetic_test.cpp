@@ -1,4 +1,5 @@
 // Each instruction of arithmetic against the same formula in C++, on numbers of all kinds.
+#include "stages/data/half_bits.h"
 #include "tests/stages/spirv/shader_text.h"
 
 namespace beampipe {
@@ -260,27 +261,22 @@ TEST(SpirvArithmetic, Conversions) {
       "%s3 = OpConstant %short 3\n%three = OpConstantComposite %s4 %s3 %s3 %s3 %s3");
 }
 
-// 16-bit floats: each result is the nearest one. (The compiler's own type is another implementation.)
+// 16-bit floats: each result is the nearest one.
 TEST(SpirvArithmetic, HalfFloats) {
-  using Half = _Float16;
-  const auto nearest = [](float x) { return static_cast<float>(static_cast<Half>(x)); };
   const std::string both = "%x = OpFConvert %h4 %va\n%y = OpFConvert %h4 %vb\n";
-  floats("%x = OpFConvert %h4 %va\n%r = OpFConvert %v4 %x", [&](const Inputs& in) { return nearest(in.a); });
-  floats("%r = OpQuantizeToF16 %v4 %va", [&](const Inputs& in) { return nearest(in.a); });
-  floats(both + "%z = OpFAdd %h4 %x %y\n%r = OpFConvert %v4 %z", [&](const Inputs& in) {
-    return static_cast<float>(static_cast<Half>(static_cast<Half>(in.a) + static_cast<Half>(in.b)));
-  });
-  floats(both + "%z = OpFMul %h4 %x %y\n%r = OpFConvert %v4 %z", [&](const Inputs& in) {
-    return static_cast<float>(static_cast<Half>(static_cast<Half>(in.a) * static_cast<Half>(in.b)));
-  });
-  floats(both + "%z = OpFDiv %h4 %x %y\n%r = OpFConvert %v4 %z", [&](const Inputs& in) {
-    return static_cast<float>(static_cast<Half>(static_cast<Half>(in.a) / static_cast<Half>(in.b)));
-  });
+  floats("%x = OpFConvert %h4 %va\n%r = OpFConvert %v4 %x", [&](const Inputs& in) { return nearest_half(in.a); });
+  floats("%r = OpQuantizeToF16 %v4 %va", [&](const Inputs& in) { return nearest_half(in.a); });
+  floats(both + "%z = OpFAdd %h4 %x %y\n%r = OpFConvert %v4 %z",
+         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) + nearest_half(in.b)); });
+  floats(both + "%z = OpFMul %h4 %x %y\n%r = OpFConvert %v4 %z",
+         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) * nearest_half(in.b)); });
+  floats(both + "%z = OpFDiv %h4 %x %y\n%r = OpFConvert %v4 %z",
+         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) / nearest_half(in.b)); });
   // Through the bits, as zink writes it.
   integers("%x = OpFConvert %h4 %va\n%y = OpBitcast %us4 %x\n%r = OpUConvert %u4 %y",
-           [](const Inputs& in) { return std::uint32_t{std::bit_cast<std::uint16_t>(static_cast<Half>(in.a))}; });
+           [](const Inputs& in) { return std::uint32_t{half_of(in.a)}; });
   floats("%x = OpUConvert %us4 %vi\n%y = OpBitcast %h4 %x\n%r = OpFConvert %v4 %y",
-         [](const Inputs& in) { return static_cast<float>(std::bit_cast<Half>(static_cast<std::uint16_t>(in.i))); });
+         [](const Inputs& in) { return half_value(static_cast<std::uint16_t>(in.i)); });
 }
 
 TEST(SpirvArithmetic, SelectsPartByPart) {
