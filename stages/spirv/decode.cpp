@@ -103,7 +103,7 @@ void Decoder::decode_instruction(const Instruction& instruction) {
       return store(pointer(instruction.operands[0]), load(pointer(instruction.operands[1])));
     case spv::OpDemoteToHelperInvocation:
       draft_.program.discards = true;
-      return add({.code = LaneCode::discard, .keeps = true, .result = kHelperRow});
+      return add({.code = LaneCode::discard});
     case spv::OpIsHelperInvocationEXT: {
       const Row result = draft_.add_row(DraftRow::Kind::value);
       add({.code = LaneCode::copy, .result = result, .a = kHelperRow});
@@ -145,7 +145,7 @@ void Decoder::decode_end(const Block& block, const std::vector<std::uint32_t>& p
     case spv::OpKill:
     case spv::OpTerminateInvocation:
       draft_.program.discards = true;
-      add({.code = LaneCode::discard, .keeps = true, .result = kHelperRow});
+      add({.code = LaneCode::discard});
       break;
     default:
       break;  // done

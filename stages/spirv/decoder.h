@@ -59,7 +59,7 @@ struct ShaderPointer {
   std::uint32_t offset = 0;
   Row index = kNoRow;
   std::optional<std::uint32_t> element = {};  // of an array of buffers; none: not chosen yet
-  std::uint32_t matrix_stride = 0;       // of a matrix in bytes
+  std::uint32_t matrix_stride = 0;            // of a matrix in bytes
   bool is_row_major = false;
   std::uint32_t vector_stride = 0;  // of a vector in bytes; 0: its components follow each other
   Row image_element = kNoRow;       // of an array of images

@@ -23,6 +23,10 @@ namespace HWY_NAMESPACE {
 // So many lanes at a time: the widest vector that any target has.
 constexpr std::size_t kLaneGroup = 16;
 
+// Rows after those of the program: results that only some lanes take, lanes that take an edge, what each lane has
+// spent, and the block that it wants.
+constexpr std::uint32_t kAsideRow = 0, kTakesRow = 1, kSpentRow = 2, kWantedRow = 3, kOwnRows = 4;
+
 struct LaneState {
   LaneRow* rows;
   std::size_t lanes;  // a multiple of kLaneGroup

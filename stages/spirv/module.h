@@ -37,11 +37,11 @@ struct ShaderType {
     pointer
   };
   Kind kind = Kind::other;
-  std::uint32_t width = 0;             // of a scalar, in bits; 32 for booleans
-  std::uint32_t element = 0;           // id: of a vector, matrix, array, pointer or sampled image; an image's texels
-  std::uint32_t count = 0;             // of elements; 0: a runtime array, whose length only its buffer knows
-  std::vector<std::uint32_t> members = {};  // ids
-  std::uint32_t parts = 0;             // kTooMany at most
+  std::uint32_t width = 0;    // of a scalar, in bits; 32 for booleans
+  std::uint32_t element = 0;  // id: of a vector, matrix, array, pointer or sampled image; an image's texels
+  std::uint32_t count = 0;    // of elements; 0: a runtime array, whose length only its buffer knows
+  std::vector<std::uint32_t> members = {};                                           // ids
+  std::uint32_t parts = 0;                                                           // kTooMany at most
   spv::StorageClass storage = spv::StorageClassMax;                                  // of a pointer
   spv::Dim dim = spv::DimMax;                                                        // of an image
   bool depth = false, arrayed = false, multisampled = false, storage_image = false;  // of an image

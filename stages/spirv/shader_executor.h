@@ -37,8 +37,8 @@ struct ShaderCounts {
 
 class ShaderExecutor {
  public:
-  // A run ends after so many lane operations, for all lanes together.
-  static constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 22;
+  // A lane is stopped after about so many lane operations.
+  static constexpr std::uint32_t kMostSteps = 1u << 20;
 
   // The program must outlive it.
   explicit ShaderExecutor(const LaneProgram& program);
@@ -58,7 +58,7 @@ class ShaderExecutor {
 
  private:
   const LaneProgram& program_;
-  std::vector<LaneRow> rows_;                // of the program, and kScratchRows
+  std::vector<LaneRow> rows_;                // of the program, and the executor's own
   std::vector<std::uint32_t> instructions_;  // of one lane, by block
 };
 
