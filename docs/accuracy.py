@@ -8,6 +8,7 @@ usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 
        docs/accuracy.py density|losses SIZES_TABLE
        docs/accuracy.py faces TABLE CULLING_TABLE
        docs/accuracy.py scenes PROGRAM DIR TABLE SIZES_TABLE
+       docs/accuracy.py merges PROGRAM DIR TABLE       what some readings of casav do, scene by scene
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
 DIR is then a folder of `beampipe sweep`, with the plan and the traces. TABLE is its table.csv. Means over scenes are
@@ -20,9 +21,10 @@ import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 import scene_traces
-from measure import PROCEDURAL, print_head, print_row
+from measure import PROCEDURAL, print_head, print_row, results, stages
 
 SCENES = ["casav", "beam", "beam:bits=128,pool=30", "beam:order=stream", "beam:order=sorted"]
 SIZES = ["1280x720", "320x180", "96x54", "32x18"]
@@ -58,8 +60,9 @@ READINGS = ["casav", *(f"casav:{reading}" for reading in (
     "overlap=over", "overlap=transition", "extents=slab",
     "order=near-first,layers=1", "order=near-first,layers=8",
     "order=stream,layers=8")), EXACT_MASKS]
+MERGES = ["casav:reading=literal", "casav", "casav:mask=exact,overlap=unbounded,depths=positions"]
 ALL = list(dict.fromkeys(SCENES + FACES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + OTHERS +
-                         READINGS + sum(POOLED.values(), [])))
+                         READINGS + MERGES + sum(POOLED.values(), [])))
 
 
 def sweep(program, models, folder, plan, other_way=False):
@@ -233,6 +236,26 @@ def print_readings(table):
         f"{rmse_ratio(table, spec):.1f}"])
 
 
+def print_merges(program, folder, table):
+    """EMR, RMSE x 1000 and operations per merge of each scene. These are `compose`'s operations over its fragments."""
+    print_head("scene", "off chip", *(f"`{spec}`" for spec in MERGES))
+    columns = {spec: [] for spec in MERGES}
+    for scene in table.scenes:
+        with tempfile.TemporaryDirectory() as pictures:
+            found = results(program, "run", folder / f"{scene}.json", MERGES, pictures, "--no-memory-model")
+        for spec in MERGES:
+            compose = stages(found[spec])["compose"]
+            columns[spec].append((float(table.row(scene, spec)["emr"]), 1000 * float(table.row(scene, spec)["rmse"]),
+                                  compose["ops"]["total"] / compose["items_in"]))
+    def cells(values):
+        return [f"{rate(emr)}, {rmse:.2f}, {work:.0f}" for emr, rmse, work in values]
+    bytes_off_chip = table.values("off_chip_bytes_per_pixel", "casav")
+    for i, scene in enumerate(table.scenes):
+        print_row(scene, f"{bytes_off_chip[i]:.0f}", *cells(column[i] for column in columns.values()))
+    print_row("geometric mean", f"{mean(bytes_off_chip):.0f}",
+              *cells(tuple(map(mean, zip(*column))) for column in columns.values()))
+
+
 def draw_frontier(table, path):
     """Memory against EMR: a line of `beam` by its positions, and labelled points for the others."""
     line = [(bytes_of(table, spec)[2], mean(table.values("emr", spec))) for spec in CAPACITIES.values()]
@@ -276,6 +299,8 @@ def main(arguments):
             print_faces(Table(table), Table(other_way))
         case ["scenes", program, folder, table, density]:
             print_scenes(program, pathlib.Path(folder) / "scenes", Table(table), Table(density))
+        case ["merges", program, folder, table]:
+            print_merges(program, pathlib.Path(folder) / "scenes", Table(table))
         case ["frontier", table, "-o", path]:
             draw_frontier(Table(table), path)
         case [kind, table] if kind in TABLES:

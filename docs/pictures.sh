@@ -20,6 +20,16 @@ cp fence/beam/frame_0000.png "$docs/pictures/fence_beam.png"
 cp fence/msaa_8/frame_0000.png "$docs/pictures/fence_msaa_8.png"
 "$docs/detail.py" 120,40,60,50 4 fence/{reference,beam,casav,msaa_8}/frame_0000.png -o "$docs/pictures/fence_detail.png"
 
+# Where the literal reading of casav errs most, in parts of this size: docs/accuracy.md.
+for part in classroom:102,51,56,44 boat:65,109,56,44 hairball:120,37,56,44; do
+  scene=${part%%:*}
+  "$program" make "$scene" -o "$scene.json"
+  "$program" run "$scene.json" -t reference casav:reading=literal casav msaa:32,256 --no-memory-model --force \
+    -o "readings_$scene"
+  "$docs/detail.py" "${part#*:}" 4 readings_"$scene"/{reference,casav_reading=literal,casav,msaa_32,msaa_256}/frame_0000.png \
+    -o "$docs/pictures/${scene}_detail.png"
+done
+
 # The worst pixel of the boat: docs/tutorial.md.
 "$program" make boat -o boat.json
 "$program" inspect boat.json --worst 1 -t beam -o "$docs/pictures/inspect_boat.svg" >inspect_boat.txt

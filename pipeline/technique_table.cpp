@@ -1,5 +1,7 @@
 #include "pipeline/technique_table.h"
 
+#include "stages/surface/surface_shader.h"
+
 // The techniques of beampipe, in the order of --help and the docs. Each is NAME_kind() in a file of
 // pipeline/techniques/.
 #define BEAMPIPE_TECHNIQUES(X) \
@@ -45,9 +47,9 @@ const std::vector<TechniqueKind>& built_in_kinds() {
 
 SpecOption filter_option(int& texture_taps) {
   return choice(
-      "filter", texture_taps, {{"sampler", 0}, {"1", 1}, {"4", 4}, {"16", 16}},
-      "textures: filtered as their samplers ask for, or the mean over the footprint by up to so many taps; beam in "
-      "all orders has 16");
+      "filter", texture_taps, {{"sampler", 0}, {"anisotropic", kAnisotropic}, {"1", 1}, {"4", 4}, {"16", 16}},
+      "textures: filtered as their samplers ask for, or with an anisotropy of 16, or the mean over the footprint by up "
+      "to so many taps; beam in all orders has 16");
 }
 
 std::vector<std::string> example_specs() { return specs_of_all(&TechniqueKind::examples); }

@@ -1,14 +1,14 @@
 // The formulas of simd/mask_table.h. No include guard: see simd/scalar.h.
 
-// The table's word for a half-plane. `row`: where the row of its unflipped angle begins. `distance`: of that from the
+// The mask of a half-plane. `row`: where the table's row for its unflipped angle begins. `distance`: of that from the
 // pixel's centre.
 template <class Mask, class Int, class Flipped, class Float>
 Mask table_word(Int row, Flipped is_flipped, Float distance, const MaskTable& table) {
   const Float zero(0.0f), one(1.0f);
   const Float scaled = (distance * Float(1.0f / kHalfDiagonal) + one) * Float(kTableDistances / 2);
   const Int column = to_integer(lesser(greater(scaled, zero), Float(kTableDistances - 1)));
-  const Int reverse = row + Int((kTableAngles / 2 + 1) * kTableDistances - 1) - column;
-  return fetch(table.words(), select(is_flipped, reverse, row + column));
+  const Mask word = fetch(table.words(), row + column);
+  return select(is_flipped, ~word, word);
 }
 
 // An edge that is farther than half a diagonal from the centre has no sample inside, or all of them.

@@ -32,8 +32,8 @@ HWY_AFTER_NAMESPACE();
 namespace beampipe {
 
 MaskTable::MaskTable(const SamplePattern& pattern) {
-  for (int angle = 0; angle < kTableAngles / 2; ++angle) {
-    const double theta = angle * 2 * std::numbers::pi / kTableAngles;
+  for (int angle = 0; angle < kTableAngles; ++angle) {
+    const double theta = angle * std::numbers::pi / kTableAngles;
     for (int r = 0; r < kTableDistances; ++r) {
       const double distance = ((r + 0.5) / (kTableDistances / 2) - 1) * kHalfDiagonal;
       std::uint32_t word = 0;
@@ -43,8 +43,6 @@ MaskTable::MaskTable(const SamplePattern& pattern) {
         if (std::cos(theta) * x + std::sin(theta) * y + distance >= 0) word |= 1u << s;
       }
       words_[static_cast<std::size_t>(angle * kTableDistances + r)] = word;
-      const int reverse = (angle + kTableAngles / 2) * kTableDistances + (kTableDistances - 1 - r);
-      words_[static_cast<std::size_t>(reverse)] = ~word;
     }
   }
 }
@@ -52,8 +50,8 @@ MaskTable::MaskTable(const SamplePattern& pattern) {
 std::int32_t table_angle(double a, double b, bool& flip) {
   flip = b < 0 || (b == 0 && a < 0);
   const double theta = flip ? std::atan2(-b, -a) : std::atan2(b, a);  // 0 <= theta < pi
-  const auto angle = static_cast<std::int32_t>(theta * (kTableAngles / (2 * std::numbers::pi)) + 0.5);
-  if (angle < kTableAngles / 2) return angle;
+  const auto angle = static_cast<std::int32_t>(theta * (kTableAngles / std::numbers::pi) + 0.5);
+  if (angle < kTableAngles) return angle;
   flip = !flip;  // pi is the reverse of 0
   return 0;
 }

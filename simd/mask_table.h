@@ -1,7 +1,8 @@
 // Localization masks by table lookup: the half-plane on the inside of an edge, found by the edge's direction and its
 // distance from the pixel's centre.
-// Source: Waller et al. 2000, "Efficient coverage mask generation for antialiasing"; a 64 x 64 (theta, r) table of
-// 32-bit words, 16 KB (slide 8 of the talk on Crassin et al. 2018).
+// Source: Waller et al. 2000, "Efficient coverage mask generation for antialiasing"; a (theta, r) table of 32-bit
+// words, 16 KB (slide 8 of the talk on Crassin et al. 2018). Its 32 x 128 entries are a choice: of the shapes of that
+// size, the one with the least error. An edge and its reverse share an entry.
 #pragma once
 
 #include <array>
@@ -13,13 +14,13 @@
 
 namespace beampipe {
 
-inline constexpr int kTableAngles = 64;     // over the full circle
-inline constexpr int kTableDistances = 64;  // over [-1/sqrt(2), 1/sqrt(2)] px, signed distance from the pixel's centre
+inline constexpr int kTableAngles = 32;      // over half a circle
+inline constexpr int kTableDistances = 128;  // over [-1/sqrt(2), 1/sqrt(2)] px, signed distance from the pixel's centre
 inline constexpr float kHalfDiagonal = 0.70710678f;  // px: beyond it an edge does not cut the pixel
 
 // Entry [theta][r] is the set of samples with n(theta) . (sample - centre) + r >= 0, for angles that are multiples of
-// 2 pi / 64, so that upright and level edges are exact but for their distance. Entry [theta + pi][-r] is its
-// complement, so every sample is in the mask of either an edge or its reverse.
+// pi / 32, so that upright and level edges are exact but for their distance. The reverse of an edge has the complement,
+// so every sample is in the mask of either.
 class MaskTable {
  public:
   explicit MaskTable(const SamplePattern& pattern);  // which has 32 samples
@@ -34,7 +35,7 @@ class MaskTable {
 template <class Int, class Mask, class Float>
 struct TableEdgeOf {
   Int angle;       // 0..31, of the unflipped edge
-  Mask flip;       // 0, or ~0 if the edge runs the other way: its entry is [angle + 32][63 - r]
+  Mask flip;       // 0, or ~0 if the edge runs the other way: its mask is the complement
   Float distance;  // of the unflipped edge from the pixel's centre, px; positive if the centre is inside
 };
 using TableEdge = TableEdgeOf<std::int32_t, std::uint32_t, float>;

@@ -50,15 +50,15 @@ struct LineDirection {
 template <class Float, class Mask>
 LineDirection<Float, Mask> line_direction(Float a, Float b) {
   using Int = decltype(to_integer(Float()));
-  const Float zero(0.0f), one(1.0f), right_angle(kTableAngles / 4);
+  const Float zero(0.0f), one(1.0f), right_angle(kTableAngles / 2);
   const auto is_below = b < zero, is_level = b == zero, is_left = a < zero;
   const auto flipped = is_below | (is_level & is_left);
   const Float size_a = magnitude(a), size_b = magnitude(b);
   const Float longer = greater(greater(size_a, size_b), Float(1e-30f)), t = lesser(size_a, size_b) / longer;
-  const Float octant = t * (Float(kTableAngles / 8) + Float(2.781f) * (one - t));
+  const Float octant = t * (Float(kTableAngles / 4) + Float(2.781f) * (one - t));
   const Float acute = select(size_b > size_a, right_angle - octant, octant);
   const Float angle = select(is_left != flipped, right_angle + right_angle - acute, acute);
-  const auto turns = angle >= Float(kTableAngles / 2 - 0.5f);  // pi is the reverse of 0
+  const auto turns = angle >= Float(kTableAngles - 0.5f);  // pi is the reverse of 0
   const Int row = to_integer(select(turns, zero, angle + Float(0.5f)));
   return {row * Int(kTableDistances), select(flipped != turns, Mask(~0u), Mask(0u)),
           one / (longer * square_root(one + t * t))};
@@ -303,8 +303,8 @@ BlendFactors<Float> blended_in(const RegionCover<Float>& slab, const BlendFactor
     return {over.i + (under.i - over.i) * delta, over.a + (under.a - over.a) * delta};
   BlendFactors<Float> blended{slab.i * (one - delta), slab.a * delta};
   if (fuzzy == MergeRules::Fuzzy::unite) {
-    const Float both = slab.i + slab.a * slab.open_i, sum = greater(blended.i + blended.a, Float(1e-30f));
-    blended = {blended.i / sum * both, blended.a / sum * both};
+    const Float scale = (over.i + over.a) / greater(blended.i + blended.a, Float(1e-30f));
+    return {blended.i * scale, blended.a * scale};
   }
   if (how.rule == MergeRules::Overlap::over) return blended;
   // Specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them.

@@ -28,9 +28,10 @@ struct MergeRules {
   // How to blend within the slab.
   enum class Fuzzy {
     unite,  // colours by b_i = alpha'_i (1 - Delta), b_a = alpha'_a Delta, as in section 2.2; the region's coverage is
-            // the union of both, alpha'_i + alpha'_a (1 - alpha'_i), as in every other region where they overlap
-    delta,  // b_i + b_a is the region's coverage as well. In the middle of a slab, two halves become a half.
-    mix,    // interpolate by Delta from the fragment over to the fragment under the aggregate: not in the text
+            // that of both together in every other region where they overlap, by `overlap`
+    delta,  // b_i + b_a is the region's coverage as well. In the middle of a slab, two halves become a half. Specks
+            // have the factors of section 2.2.1, as in front of the slab.
+    mix,  // interpolate by Delta from the fragment over to the fragment under the aggregate: not in the text
   } fuzzy = Fuzzy::unite;
 
   // Where the slab ends at a position, for the depth partition and for Delta.

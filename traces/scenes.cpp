@@ -41,6 +41,8 @@ const std::vector<SceneKind>& scene_kinds() {
       {"scaffold", "thin bars, planks and a net in front of a wall with windows", make_scaffold, false, true},
       {"cables", "cables, thinner than a pixel, that hang across a street and along it", make_cables, false, true},
       {"crowd", "hundreds of small figures up to the end of a square", make_crowd, false, true},
+      {"stairs", "a staircase with wallpaper, boards and a carpet, seen at grazing angles", make_stairs, true, true},
+      {"study", "a narrow room with a wall of books, wallpaper, boards and a carpet", make_study, true, true},
   };
   return kinds;
 }

@@ -91,15 +91,16 @@ class Bin {
     peak = std::max(peak, bytes);
   }
 
-  // What a stage of the bin keeps in memory while the bin is drawn.
-  struct KeptInL2 {
+  // An array that a stage of the bin keeps in memory while the bin is drawn.
+  struct KeptInMemory {
     Stage stage;
-    std::uint64_t requests = 0;    // sectors
-    std::uint64_t peak_bytes = 0;  // at once
+    std::uint64_t peak_bytes = 0;
+    std::uint64_t reads = 0, writes = 0;  // sectors that moved through L2
   };
 
-  // It moved through L2. Whoever adds up the bins that are in work at the same time knows whether L2 holds it.
-  void keeps_in_l2(const KeptInL2& kept) { kept_in_l2_ = kept; }
+  // The records that do not fit into a pool. Whoever adds up the bins that are in work at the same time knows how much
+  // of them L2 holds.
+  void spills(const KeptInMemory& records) { spilled_ = records; }
 
   // The bin keeps so many bytes of A-buffer in memory.
   void keeps_a_buffer(std::uint64_t bytes) { a_buffer_bytes_ += bytes; }
@@ -146,7 +147,7 @@ class Bin {
   const std::map<std::string, std::vector<float>>& pixel_counters() const { return pixel_counters_; }
   const std::map<std::string, std::uint64_t>& buffer_peaks() const { return buffer_peaks_; }
   std::uint64_t a_buffer_bytes() const { return a_buffer_bytes_; }
-  const KeptInL2& kept_in_l2() const { return kept_in_l2_; }
+  const KeptInMemory& spilled() const { return spilled_; }
   // Of the GPU's caches, of which the bin may have a part.
   CacheReach cache_reach() const;
   int geometry_passes(Pass pass) const { return pass == Pass::main ? std::max(geometry_passes_, 1) : prepasses_; }
@@ -162,7 +163,7 @@ class Bin {
   std::map<std::string, std::vector<float>> pixel_counters_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::uint64_t a_buffer_bytes_ = 0;
-  KeptInL2 kept_in_l2_;
+  KeptInMemory spilled_;
   int geometry_passes_ = 0, prepasses_ = 0;
   std::vector<std::uint32_t> geometry_pass_starts_, texture_pass_starts_ = {0};
   bool is_texture_pass_placed_ = false;

@@ -193,7 +193,7 @@ class FrameRecorder {
     result_.image = {frame.width, frame.height, {}};
     result_.bin_operations.resize(bins);
     result_.bin_invocations.resize(bins);
-    kept_in_l2_.resize(bins);
+    spilled_.resize(bins);
     for (const Stage stage : stages) result_.stages.push_back(StageCounters{stage});
   }
 
@@ -230,13 +230,14 @@ class FrameRecorder {
       tally_.add(pass.tally, each, static_cast<std::uint64_t>(passes(each)));
     if (trace_) repeat_geometry();
     charge_texture_dram();
-    charge_kept_in_l2(bins_in_work);
+    const std::uint64_t spilled = charge_spilled(bins_in_work);
     const std::uint64_t triangles = context_.triangles.triangles.size();
     if (!context_.run.memory.draws_unbinned())
       result_.buffers = {
           {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
           {"bin_lists", list_bytes}};
     for (const auto& [name, bytes] : buffer_peaks_) result_.buffers.push_back({name, bytes, true});
+    if (spilled > 0) result_.buffers.push_back({kSpilledRecords, spilled});
     result_.dram_arrays = tally_.sums();
     return std::move(result_);
   }
@@ -248,7 +249,7 @@ class FrameRecorder {
       if (info_of(stage.stage.id).can_be_shader) result_.bin_operations[index] += stage.ops.total();
       if (stage.stage.id == StageId::shade) result_.bin_invocations[index] += stage.lanes_issued;
     }
-    kept_in_l2_[index] = bin.kept_in_l2();
+    spilled_[index] = bin.spilled();
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
@@ -299,26 +300,37 @@ class FrameRecorder {
   }
 
   // L2 holds what the bins in work keep in memory, as far as it has room. What is beyond that moves to and from DRAM.
-  void charge_kept_in_l2(std::uint64_t bins_in_work) {
-    const MemoryParameters& memory = context_.run.memory;
-    for (std::size_t first = 0; first < kept_in_l2_.size(); first += bins_in_work) {
-      const std::size_t end = std::min(first + bins_in_work, kept_in_l2_.size());
+  // Returns the most bytes that are kept at once.
+  std::uint64_t charge_spilled(std::uint64_t bins_in_work) {
+    const std::uint64_t room = context_.run.memory.l2.bytes;
+    std::uint64_t most = 0;
+    for (std::size_t first = 0; first < spilled_.size(); first += bins_in_work) {
+      const std::size_t end = std::min(first + bins_in_work, spilled_.size());
       std::uint64_t held = 0;
-      for (std::size_t bin = first; bin < end; ++bin) held += kept_in_l2_[bin].peak_bytes;
+      for (std::size_t bin = first; bin < end; ++bin) held += spilled_[bin].peak_bytes;
+      most = std::max(most, held);
       result_.cache_reach.add({.l2 = held});
-      for (std::size_t bin = first; held > memory.l2.bytes && bin < end; ++bin) {
-        const Bin::KeptInL2& kept = kept_in_l2_[bin];
-        if (kept.requests == 0) continue;
-        const auto part = static_cast<double>(held - memory.l2.bytes) / static_cast<double>(held);
-        const auto missed = static_cast<std::uint64_t>(static_cast<double>(kept.requests) * part);
-        DramLog log;
-        StageCounters moved{kept.stage};
-        stream({memory, trace_ ? &log : nullptr, &tally_}, DramAccess::read, {name_of(kept.stage)},
-               missed * memory.sector_bytes, moved);
-        find_counters(result_.stages, kept.stage)->dram_bytes += moved.dram_bytes;
-        if (trace_) trace_->add(log, first_pass_, bin);
-      }
+      for (std::size_t bin = first; held > room && bin < end; ++bin)
+        move_spilled(bin, static_cast<double>(held - room) / static_cast<double>(held));
     }
+    return most;
+  }
+
+  // `part`: of the requests that L2 does not answer.
+  void move_spilled(std::size_t bin, double part) {
+    const Bin::KeptInMemory& kept = spilled_[bin];
+    if (kept.reads + kept.writes == 0) return;
+    const MemoryParameters& memory = context_.run.memory;
+    const auto missed = [&](std::uint64_t sectors) {
+      return static_cast<std::uint64_t>(static_cast<double>(sectors) * part) * memory.sector_bytes;
+    };
+    DramLog log;
+    StageCounters moved{kept.stage};
+    const MemorySystem system{memory, trace_ ? &log : nullptr, &tally_};
+    stream(system, DramAccess::write, {kSpilledRecords}, missed(kept.writes), moved);
+    stream(system, DramAccess::read, {kSpilledRecords}, missed(kept.reads), moved);
+    find_counters(result_.stages, kept.stage)->dram_bytes += moved.dram_bytes;
+    if (trace_) trace_->add(log, first_pass_, bin);
   }
 
   // The texels that a bin fetches in a pass over the frame follow the bin's other requests in that pass.
@@ -355,7 +367,7 @@ class FrameRecorder {
   glm::vec4 color_{0.0f};  // that the picture starts with
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
-  std::vector<Bin::KeptInL2> kept_in_l2_;      // by bin
+  std::vector<Bin::KeptInMemory> spilled_;     // by bin
   int passes_ = 1, prepasses_ = 0;
   DramTrace* trace_;
   std::uint32_t first_pass_;                                     // of the trace

@@ -24,6 +24,9 @@ inline constexpr const char* kOpenPixels = "open_pixels";
 // The name of the buffer that says what a frame's translucent triangles take in memory beside the framebuffer.
 inline constexpr const char* kTranslucentLayer = "translucent_layer";
 
+// Records of pixels in memory that found no room in their bins' pools, of all bins in work at the same time.
+inline constexpr const char* kSpilledRecords = "spilled_records";
+
 struct Framebuffer {
   std::vector<Surface> surfaces = {};
   // More of them, in frames with translucent triangles.

@@ -85,10 +85,12 @@ class TriangleFetches {
     }
   }
 
-  // The depth plane alone.
-  void depth(std::uint32_t triangle, StageCounters& counters) {
-    constexpr std::size_t kBegin = offsetof(SetupTriangle, depth);
-    if (modelled_) lines_.fetch(places_.setup[rank(triangle)] + kBegin, sizeof(ScreenDepth), 1, counters);
+  // The depth plane alone, or with the depths of the vertices, which stand before it.
+  void depth(std::uint32_t triangle, StageCounters& counters, bool has_vertices = false) {
+    constexpr std::size_t kEnd = offsetof(SetupTriangle, depth) + sizeof(ScreenDepth);
+    const std::size_t begin = has_vertices ? offsetof(SetupTriangle, vertex_z) : offsetof(SetupTriangle, depth);
+    if (modelled_)
+      lines_.fetch(places_.setup[rank(triangle)] + begin, static_cast<std::uint32_t>(kEnd - begin), 1, counters);
   }
 
   // For the triangles of all pairs or fragments.

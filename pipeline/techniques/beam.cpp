@@ -68,7 +68,7 @@ TechniqueKind beam_kind() {
       .examples = {"beam", "beam:bits=128,pool=30,at=visible", "beam:bits=32,pool=16,bin=8,at=quarters",
                    "beam:at=covered,alpha=256,filter=sampler"},
       .texture_taps = 16,
-      .stressed = {"beam", "beam:bits=128,pool=0"},
+      .stressed = {"beam", "beam:bits=128,pool=16"},
       .make = make_from(
           BeamOptions{},
           [](BeamOptions& o) -> SpecOptions {
@@ -76,8 +76,7 @@ TechniqueKind beam_kind() {
                 choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
                        "positions of the mask"),
                 choice("pool", o.pool,
-                       {{"0", 0},
-                        {"16", 16},
+                       {{"16", 16},
                         {"24", 24},
                         {"30", 30},
                         {"40", 40},

@@ -1,5 +1,6 @@
 // The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
-// become shaded fragments and are composed, until the pixel is closed.
+// become shaded fragments and are composed, until the pixel is closed. Or, as the published pipeline does it, an
+// A-buffer sorts the fragments of each pixel, and they are composed one by one.
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
@@ -12,10 +13,12 @@
 namespace beampipe {
 namespace {
 
+enum class Window { run, one };  // triangles that are composed at once
+
 struct SortedOptions {
   int positions = 256;  // of the mask; together with `storage` one of BEAMPIPE_STORED_AGGREGATES
   Storage storage = Storage::packed;
-  std::size_t window = kAnyNumber;  // most pairs in a window
+  Window window = Window::run;
 };
 
 Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
@@ -27,7 +30,7 @@ Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
 }
 
 template <std::size_t Words, class Channel>
-FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
+FrameResult render_windows(const FrameJob& job, const SortedOptions& sorted) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
@@ -46,7 +49,7 @@ FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
     std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
 
     const std::vector<Pair>& pairs = raster();
-    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)), sorted.window);
+    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)));
     while (windows.next([&](std::uint32_t pixel) { return compose.is_open(pixel); })) {
       std::vector<Fragment>& fragments = make_fragments.fetched(windows.pairs, "window_fragments");
       shade.visible(fragments);
@@ -60,9 +63,53 @@ FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
   });
 }
 
+template <std::size_t Words, class Channel>
+FrameResult render_one_by_one(const FrameJob& job, const SortedOptions& sorted) {
+  const FrameContext context(job, {.takes_positions = true});
+  const PositionGrid grid(sorted.positions);
+  const std::uint32_t fragment_bytes = conserving_fragment_bytes(sorted.positions);
+  BeamFragmentOptions fragment_options = grid_options(grid, fragment_bytes);
+  fragment_options.clipped_depth = true;
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::a_buffer, StageId::shade,
+                                StageId::compose, StageId::resolve},
+                     .framebuffer = sorted_framebuffer(sorted),
+                     .pair_bytes = kPairWorkingBytes + kSortBytes,
+                     .order = "near to far, by the depth at the centroid"};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out,
+                                  kQueueItems);
+    BeamFragmentUnit make_fragments(bin, fragment_options);
+    ABufferUnit a_buffer(bin, fragment_bytes, fragment_bytes);
+    ShadeUnit shade(bin);
+    ComposeBeamUnit<Words, Channel> compose(bin, cell_positions(sorted.positions));
+    std::vector<float>& merges = bin.pixel_counter("merges");
+
+    const std::vector<Fragment>& fragments = make_fragments.queued(raster());
+    count_specks(fragments, bin.pixel_counter("tiny_triangles"));
+    const ABuffer& lists = a_buffer(sort_records(fragments, SortKey::centroid));
+    std::vector<Fragment> next;  // of each open pixel that has one
+    for (std::uint32_t round = 0;; ++round) {
+      next.clear();
+      for (std::uint32_t pixel = 0; pixel < merges.size(); ++pixel) {
+        if (round >= lists.record_count(pixel) || !compose.is_open(pixel)) continue;
+        next.push_back(fragments[lists.records[lists.first[pixel] + round]]);
+        merges[pixel] += 1;
+      }
+      if (next.empty()) break;
+      shade.visible(next);
+      compose(next, {});
+    }
+    shade.finish_fetches();
+    a_buffer.charge_memory(merges, bin.stage(StageId::compose));
+    bin.finish(compose.resolve_aggregates(plan.framebuffer.surfaces));
+  });
+}
+
 FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
-  return with_aggregate(sorted.positions, sorted.storage,
-                        [&]<std::size_t Words, class Channel>() { return render_shape<Words, Channel>(job, sorted); });
+  return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
+    return sorted.window == Window::run ? render_windows<Words, Channel>(job, sorted)
+                                        : render_one_by_one<Words, Channel>(job, sorted);
+  });
 }
 
 }  // namespace
@@ -85,8 +132,9 @@ TechniqueKind beam_sorted_kind() {
                             "bits=256", [&o] { return o.positions == 256; },
                             choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
                                    "format of the aggregate's colour: fp16, or float32")),
-                        choice("window", o.window, {{"run", kAnyNumber}, {"one", 1}},
-                               "what is composed at once: a run of triangles whose depths overlap, or one triangle")};
+                        choice("window", o.window, {{"run", Window::run}, {"one", Window::one}},
+                               "what is composed at once: a run of triangles whose depths overlap, or one triangle, by "
+                               "the depths of their centroids")};
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),

@@ -13,18 +13,24 @@
 namespace beampipe {
 namespace {
 
-constexpr int kPositions = 128;  // of the mask
-constexpr std::size_t kWords = kPositions / 32, kOwners = 12;
+struct StreamOptions {
+  // Of the mask. With 256, scenes that leave room in the pool are more accurate, and those that fill it less.
+  int positions = 128;
+};
+
+constexpr std::size_t kOwners = 12;
 constexpr int kPoolBytes = 90;  // for each pixel
 
 Framebuffer stream_framebuffer() { return {.surfaces = pooled_pixel_surfaces(kPoolBytes)}; }
 
 // `closes_at`: the triangle from which on the pool is closed.
+template <std::size_t Words>
 FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t closes_at) {
+  constexpr int kPositions = 32 * Words;
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(kPositions);
   const PositionGrid grid(kPositions);
-  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(kWords), kOwnersWholeFragmentBytes);
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes);
   const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::compose, StageId::shade,
                                 StageId::resolve},
                      .framebuffer = stream_framebuffer()};
@@ -33,7 +39,7 @@ FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t clo
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     bin.triangle_fetches().load_setup();
-    ComposePooledUnit<kWords> compose(
+    ComposePooledUnit<Words> compose(
         bin, owners_bin(bin, positions, bin.list, nullptr),
         {.bytes_per_pixel = kPoolBytes, .most_owners = kOwners, .of_frame = &pool, .closes_at = closes_at});
 
@@ -46,20 +52,25 @@ FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t clo
 }
 
 // A frame that fills the pool is rendered again, with the pool closed from there on.
-FrameResult render_stream(const FrameJob& job) {
+template <std::size_t Words>
+FrameResult render_words(const FrameJob& job) {
   const auto new_pool = [&] {
     return std::make_unique<FramePool>(std::size_t{job.frame.width} * job.frame.height, kPoolBytes,
-                                       least_chunks(kWords));
+                                       least_chunks(Words));
   };
   FrameInput whole_frame = job.run;
   whole_frame.pixels = nullptr;
   const FrameSinks none;
   const bool collects = !(job.sinks == none) || job.run.pixels;
   const std::unique_ptr<FramePool> claimed = new_pool();
-  FrameResult result = render_frame({job.trace, job.frame, whole_frame, none}, *claimed, ~0u);
+  FrameResult result = render_frame<Words>({job.trace, job.frame, whole_frame, none}, *claimed, ~0u);
   const std::uint32_t full_at = claimed->full_at();
   if (full_at == ~0u && !collects) return result;
-  return render_frame(job, *new_pool(), full_at);
+  return render_frame<Words>(job, *new_pool(), full_at);
+}
+
+FrameResult render_stream(const FrameJob& job, const StreamOptions& stream) {
+  return with_words(stream.positions, [&]<std::size_t Words>() { return render_words<Words>(job); });
 }
 
 }  // namespace
@@ -68,21 +79,26 @@ TechniqueKind beam_stream_kind() {
   return {.name = "beam",
           .variant = {"order", "stream"},
           .description =
-              "the surfaces of beam with fragments in primitive order: no A-buffer, no sorted bins; 128 positions, "
-              "and the pool lies in memory; of more than twelve surfaces of a pixel two are merged, and of fewer once "
-              "the pool is full",
+              "the surfaces of beam with fragments in primitive order: no A-buffer, no sorted bins; the pool lies in "
+              "memory; of more than twelve surfaces of a pixel two are merged, and of fewer once the pool is full",
           .source = "ours",
-          .examples = {"beam:order=stream"},
+          .examples = {"beam:order=stream", "beam:order=stream,bits=256"},
           .texture_taps = 16,
-          .stressed = {"beam:order=stream"},
-          .make = make_plain([] {
-            return Technique{.framebuffer = stream_framebuffer(),
-                             .positions = kPositions,
-                             .counted_positions = kPositions,
-                             .renderer = bind_options(render_stream),
-                             .is_observable = true,
-                             .has_weights = true};
-          })};
+          .stressed = {"beam:order=stream", "beam:order=stream,bits=256"},
+          .make = make_from(
+              StreamOptions{},
+              [](StreamOptions& o) -> SpecOptions {
+                return {choice("bits", o.positions, {{"128", 128}, {"256", 256}},
+                               "positions of the mask; records with more of them fill the pool earlier")};
+              },
+              [](const StreamOptions& o) {
+                return Technique{.framebuffer = stream_framebuffer(),
+                                 .positions = o.positions,
+                                 .counted_positions = o.positions,
+                                 .renderer = bind_options(render_stream, o),
+                                 .is_observable = true,
+                                 .has_weights = true};
+              })};
 }
 
 }  // namespace beampipe

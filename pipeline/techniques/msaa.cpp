@@ -65,6 +65,7 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options, const S
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
   if (options.motion) plan.stages.push_back(StageId::motion);
+  if (options.sorts_translucent && context.has_blending()) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);
     bin.finish(draw_forward(bin, options, depth_test));
@@ -106,6 +107,7 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
   constexpr auto kAll = SampleRasterUnit::Translucent::drawn;
   const Sampling& sampling = depth_test.sampling();
   SampleRasterUnit raster(bin, kAll, options.alpha);
+  if (options.sorts_translucent) raster.sorts_translucent();
   SampleShadeUnit shade(bin, sampling, options.at, color_bytes(options));
   shade.counts_centroids();
   depth_test.shade_translucent_at(options.at);
@@ -153,7 +155,7 @@ TechniqueKind msaa_kind() {
           "16 samples, super-resolution of 8x",
       .source = "Direct3D, Vulkan",
       .examples = {"msaa:1", "msaa:8", "msaa:64", "msaa:8,prepass", "msaa:4,motion,resolve=reinhard",
-                   "msaa:4,at=centroid,alpha=coverage"},
+                   "msaa:4,at=centroid,alpha=coverage", "msaa:4,alpha=sample", "msaa:8,alpha=hashed,blend=sorted"},
       .stressed = {"msaa:1", "msaa:8", "msaa:16", "msaa:256"},
       .make = make_from(
           MsaaOptions{},
@@ -169,8 +171,17 @@ TechniqueKind msaa_kind() {
                 choice("at", o.at, {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}},
                        "shading point when the centre is uncovered: the centre anyway, or the centroid of the covered "
                        "samples"),
-                choice("alpha", o.alpha, {{"test", AlphaCoverage::test}, {"coverage", AlphaCoverage::to_coverage}},
-                       "alpha of cutouts: tested once per fragment, or taken as the share of its samples"),
+                choice("alpha", o.alpha,
+                       {{"test", AlphaCoverage::test},
+                        {"sample", AlphaCoverage::by_sample},
+                        {"hashed", AlphaCoverage::hashed},
+                        {"coverage", AlphaCoverage::to_coverage}},
+                       "alpha of cutouts: tested once per fragment or at each sample, or taken as the share of its "
+                       "samples, which a hash of the place on the surface chooses, or which are the same for all"),
+                choice(
+                    "blend", o.sorts_translucent, {{"ordered", false}, {"sorted", true}},
+                    "translucent triangles: in the order of draws, or after all others, far to near by the mean depth "
+                    "of their vertices"),
                 flag("prepass", o.prepass,
                      "depth first, so that only visible fragments are shaded; only translucent triangles look "
                      "different: "

@@ -27,6 +27,7 @@ struct MsaaOptions {
   SampleColor color = SampleColor::rgb16f;
   ShadeAt at = ShadeAt::centre;
   AlphaCoverage alpha = AlphaCoverage::test;
+  bool sorts_translucent = false;  // draws them last, far to near
   bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.
   bool motion = false;   // motion vectors from the samples' depths, for passes that need them
   ResolveSpace space = ResolveSpace::linear;

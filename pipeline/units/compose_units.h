@@ -13,9 +13,9 @@ namespace beampipe {
 
 class WindowsUnit {
  public:
-  // `sorted`: the pairs that `lists` sorts by nearest depth. Both must outlive the unit. `most`: pairs in a window.
-  WindowsUnit(Bin& bin, const std::vector<Pair>& sorted, const ABuffer& lists, std::size_t most)
-      : stage(bin.stage(StageId::windows)), bin_(bin), windows_(sorted, lists, kStoredPairBytes, most) {}
+  // `sorted`: the pairs that `lists` sorts by nearest depth. Both must outlive the unit.
+  WindowsUnit(Bin& bin, const std::vector<Pair>& sorted, const ABuffer& lists)
+      : stage(bin.stage(StageId::windows)), bin_(bin), windows_(sorted, lists, kStoredPairBytes) {}
 
   // The next window of every pixel that is open; false when there is none.
   template <class IsOpen>

@@ -91,7 +91,10 @@ class ShadeUnit {
   }
   // Composition shades these. Texels that it has read are charged here.
   void visible(const std::vector<Pair>& whole) { charge_visible(whole); }
-  void visible(const std::vector<ShadedTriangle>& shaded) { charge_visible(shaded); }
+  void visible(const std::vector<ShadedTriangle>& shaded, const OperationCounts& decisions) {
+    charge_visible(shaded);
+    stage_.counters.ops += decisions;
+  }
 
   void finish_fetches() { bin_.triangle_fetches().flush(stage_.counters); }
 

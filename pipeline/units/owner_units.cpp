@@ -14,10 +14,11 @@ void OpenPixelStore::merge(const std::vector<Fragment>& fragments) {
   for (const Fragment& fragment : fragments) memory_.merge(fragment.triangle, fragment.pixel, compose);
 }
 
-void OpenPixelStore::scan() {
+void OpenPixelStore::collect(const std::vector<std::uint32_t>& written) {
   if (bin_.keeps_pixels_on_chip()) return;
   StageCounters& compose = bin_.stage(StageId::compose).counters;
   for (std::uint32_t pixel = 0; pixel < bin_.tile.pixels(); ++pixel) memory_.read(pixel, compose);
+  for (const std::uint32_t pixel : written) memory_.write(pixel, compose);
 }
 
 void OpenPixelStore::finish() {

@@ -26,8 +26,8 @@ class OpenPixelStore {
   // Stage `compose` reads and writes the pixel of each fragment.
   void merge(const std::vector<Fragment>& fragments);
 
-  // Stage `compose` reads all pixels.
-  void scan();
+  // Stage `compose` reads all pixels, and writes these.
+  void collect(const std::vector<std::uint32_t>& written);
 
   // After the last fragment: `resolve` reads all pixels.
   void finish();

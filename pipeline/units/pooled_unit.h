@@ -47,6 +47,9 @@ class ComposePooledUnit {
         records_(bin.memory(), kRecordPool, bin.tile.pixels(),
                  {most_chunks(Words), kChunkBytes + pixels_.pool.link_bytes()}) {
     pixels_.closes_at = pool.closes_at;
+    if (!frame_pool_) return;
+    pooled_maps_.refusals = &bin.pixel_counter("refusals");
+    pooled_maps_.lost_specks = &bin.pixel_counter("lost_specks");
   }
 
   // `first`: as in OwnersBatch.
@@ -55,8 +58,8 @@ class ComposePooledUnit {
     compose_pooled(owners_, {fragments, first}, stage_.timed(), PooledTile<Words>{pixels_, closed, maps_, result});
     charge(closed, stage_.counters);
     words_.merge(fragments);
-    for (std::uint64_t i = 0; i < result.collections; ++i) words_.scan();
-    collections_ += result.collections;
+    for (const std::vector<std::uint32_t>& written : result.collections) words_.collect(written);
+    collections_ += result.collections.size();
     claims_.insert(claims_.end(), result.claims.begin(), result.claims.end());
     finish(result, shade);
   }
@@ -68,7 +71,7 @@ class ComposePooledUnit {
     const std::vector<PixelColor> colors = finish_pooled(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     records_.flush(stage_.counters);
-    if (bin_.models_memory() && bin_.keeps_pixels_on_chip()) charge_chunks_in_memory();
+    spill();
     if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
     if (frame_pool_) {
       frame_pool_->add(claims_);
@@ -81,11 +84,15 @@ class ComposePooledUnit {
   }
 
  private:
-  // Beside a pool on chip, a chunk in memory is a request of a sector.
-  void charge_chunks_in_memory() {
+  // A chunk beyond the pool takes a sector. Where the pool is in memory itself, records_ has its requests.
+  void spill() {
     const std::uint32_t bytes = bin_.memory().sector_bytes;
-    stage_.moves_in_l2(chunks_in_memory_ * bytes);
-    bin_.keeps_in_l2({stage_.counters.stage, chunks_in_memory_, pixels_.pool.peak_in_memory() * bytes});
+    Bin::KeptInMemory records{stage_.counters.stage, pixels_.pool.peak_in_memory() * bytes};
+    if (bin_.models_memory() && bin_.keeps_pixels_on_chip()) {
+      stage_.moves_in_l2(spills_.all() * bytes);
+      records.reads = spills_.reads, records.writes = spills_.writes;
+    }
+    bin_.spills(records);
   }
 
   // What holds for the whole bin, in each of its pixels.
@@ -109,10 +116,11 @@ class ComposePooledUnit {
   }
 
   void finish(const PooledResult& result, ShadeUnit& shade) {
-    for (const std::uint32_t triangle : result.fetched) bin_.triangle_fetches().depth(triangle, stage_.counters);
+    for (const DepthFetch& fetch : result.fetched)
+      bin_.triangle_fetches().depth(fetch.triangle, stage_.counters, fetch.has_vertices);
     for (const RecordVisit& visit : result.visits) records_.access(visit, stage_.counters);
-    chunks_in_memory_ += result.chunks_in_memory;
-    shade.visible(result.shaded);
+    spills_ += result.spills;
+    shade.visible(result.shaded, result.decisions);
   }
 
   Bin& bin_;
@@ -124,7 +132,8 @@ class ComposePooledUnit {
   PooledPixels<Words> pixels_;
   OpenPixelStore words_;
   RecordMemory records_;
-  std::uint64_t collections_ = 0, chunks_in_memory_ = 0;
+  std::uint64_t collections_ = 0;
+  ChunkRequests spills_;
   std::vector<PoolClaim> claims_;
 };
 

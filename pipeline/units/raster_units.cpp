@@ -5,6 +5,8 @@
 
 #include "pipeline/units/sample_places.h"
 #include "stages/cost/closed_depth_cost.h"
+#include "stages/raster/bin_sort.h"
+#include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
 
@@ -35,10 +37,21 @@ void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
 }
 
 const TriangleList& SampleRasterUnit::drawn_triangles() {
-  if (!bin_.context.has_blending() || translucent_ == Translucent::drawn) return bin_.list;
+  if (!bin_.context.has_blending() || (translucent_ == Translucent::drawn && !sorts_translucent_)) return bin_.list;
+  const SurfaceShader& shader = bin_.context.shader;
+  if (sorts_translucent_) {
+    drawn_ = bin_.list;
+    const auto first = std::stable_partition(drawn_.begin(), drawn_.end(),
+                                             [&](std::uint32_t triangle) { return !shader.is_translucent(triangle); });
+    const TriangleList blended(first, drawn_.end());
+    const BinStage sorting = bin_.stage(StageId::bin_sort);
+    std::ranges::copy(sort_far_to_near(bin_.triangles(), blended, sorting.timed()), first);
+    sorting.moves_in_l2(2 * kSortPasses * blended.size() * (sizeof(std::uint32_t) + kKeyBytes));
+    return drawn_;
+  }
   drawn_.clear();
   std::ranges::copy_if(bin_.list, std::back_inserter(drawn_), [&](std::uint32_t triangle) {
-    return bin_.context.shader.is_translucent(triangle) == (translucent_ == Translucent::alone);
+    return shader.is_translucent(triangle) == (translucent_ == Translucent::alone);
   });
   return drawn_;
 }

@@ -104,6 +104,9 @@ class SampleRasterUnit {
   // Where no depth is tested, nothing is left out.
   void keeps_hidden() { keeps_hidden_ = true; }
 
+  // Draws translucent triangles after all others, far to near by the mean depth of their vertices.
+  void sorts_translucent() { sorts_translucent_ = true; }
+
   // One geometry pass: calls body(fragments) for each batch of triangles. Leaves out what lies behind the cells that
   // this pass has closed so far, as a hierarchical depth buffer does. Fragments of cutouts pass the alpha test first.
   // `at`: where fragments are shaded. `surface`: what the body tests them against; its pass ends with this one.
@@ -145,10 +148,10 @@ class SampleRasterUnit {
   Pass pass_;
   BinStage stage_;
   std::vector<SampleFragment> fragments_;
-  TriangleList drawn_;  // if not all of the bin's triangles are drawn
+  TriangleList drawn_;  // if not all of the bin's triangles are drawn in their order
   Translucent translucent_;
   AlphaCoverage coverage_;
-  bool keeps_hidden_ = false;
+  bool keeps_hidden_ = false, sorts_translucent_ = false;
 };
 
 }  // namespace beampipe

@@ -55,6 +55,7 @@ class AlphaMask {
  private:
   // The part of the fragment that is left, 0..1.
   float cut_out(Fragment& fragment) {
+    if (shader_.alpha_cutoff(fragment.triangle) <= 0.0f) return 1.0f;  // whatever the texture has
     if (fragment.mask.none()) {
       const float part = covered_part(fragment, fragment.centroid_u, fragment.centroid_v, 1.0f);
       end_request(texels_);

@@ -185,10 +185,8 @@ class PixelComposer {
   bool is_nearer(const Fragment& fragment, const Fragment* fragments, std::uint32_t owner) {
     if (owner == kNoOwner) return true;
     ++work_.surface_tests;
-    const DepthPlane<float>& plane = fragments[owner].plane;
-    const float u = fragment.centroid_u - 0.5f, v = fragment.centroid_v - 0.5f;
-    return fragment.centroid_z <=
-           depth_at(plane, u, v) + kSurfaceReach * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+    return is_on_or_before(fragment.centroid_z, fragments[owner].plane, fragment.centroid_u - 0.5f,
+                           fragment.centroid_v - 0.5f);
   }
 
   const PositionSet& positions_;

@@ -5,7 +5,7 @@
 
 #include "simd/conserve.h"
 #include "simd/depth_compare.h"
-#include "stages/beam/specks.h"
+#include "stages/beam/specks_cost.h"
 #include "stages/cost/plane_cost.h"
 #include "stages/data/beam_aggregate.h"
 #include "stages/data/pair.h"
@@ -80,7 +80,7 @@ inline OperationCounts addition_cost() {
 inline OperationCounts speck_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedFloat one(1.0f, counts), limit(kSpeckShares);
-    for (int axis = 0; axis < 2; ++axis) lesser(greater(converted(one * CountedFloat(PositionSet::kPlaces)), one), one);
+    for (int axis = 0; axis < 2; ++axis) PositionSet::place_of(one);
     CountedFloat votes(0.0f);
     for (int vote = 0; vote < 3; ++vote) votes = votes + one;
     counts.fetch += 1 + 3;                  // the positions and their owners
@@ -91,16 +91,6 @@ inline OperationCounts speck_cost() {
     static_cast<void>(is_front);
     const CountedFloat area = one * lesser(limit / (one * larger), one);
     add_color(lesser(area, CountedFloat(1.0f) - one), one);
-  });
-}
-
-// The test whether a speck lies in front of a surface or on it.
-inline OperationCounts surface_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const CountedFloat one(1.0f, counts), half(0.5f);
-    const DepthPlane<CountedFloat> plane{one, one, one};
-    const CountedFloat reach = CountedFloat(kSurfaceReach) * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
-    static_cast<void>(one <= depth_at(plane, one - half, one - half) + reach);
   });
 }
 
@@ -131,7 +121,7 @@ template <std::size_t Words, class Channel>
 void charge(const ComposeWork& work, StageCounters& counters) {
   static const UnitCost of_mask = mask_cost(Words), of_contestant = contest_cost(Words),
                         of_depth_test = depth_compare_cost(), of_addition = addition_cost(), of_speck = speck_cost(),
-                        of_surface_test = surface_cost(), of_closing = closing_cost();
+                        of_surface_test = speck_test_cost(), of_closing = closing_cost();
   constexpr OperationCounts of_visible_part{.special = 1}, of_order_test{.add = 1}, of_closed_test{.add = 1};
   counters.items_in += work.fragments;
   counters.items_out += work.windows;

@@ -157,8 +157,8 @@ class PooledComposer {
   // Where the fragment lies in a pixel that one triangle covers. Nobody else owns a position there, so this is the only
   // contest.
   Side side_of(const Fragment& fragment) {
-    ++work.contests, ++work.planes;
-    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word().number]);
+    ++work.contests;
+    fetch_plane(at_.word().number);
     const PlaneGap<float> gap = plane_gap(fragment.plane, at_.cover_depth().plane);
     return is_nearer(gap) ? Side::nearer : is_farther(gap) ? Side::farther : Side::crossing;
   }
@@ -192,10 +192,19 @@ class PooledComposer {
     at_.own(at_.shape.owners++, claimed);
     ++at_.new_slots;
     if (at_.shape.owners > pixels_.most_owners) make_one_less(number);
-    if (!at_.has_room()) at_.forget_sums();
-    while (!at_.has_room()) make_one_less(number);
+    if (!at_.has_room()) fit(number);
     if (closes) close(closed);
     store(closed);
+  }
+
+  // Into what the frame's pool allows.
+  void fit(std::uint32_t number) {
+    ++(*result_.maps.refusals)[at_.index];
+    if (at_.shape.has_sums) {
+      ++(*result_.maps.lost_specks)[at_.index];
+      forget_specks();
+    }
+    while (!at_.has_room()) make_one_less(number);
   }
 
   HWY_INLINE static OwnerSlot slot_of(const Fragment& fragment, const Mask& mask, std::uint32_t number) {
@@ -230,10 +239,15 @@ class PooledComposer {
 
   // Of owner k.
   DepthPlane<float> plane_of(std::size_t k) {
-    ++work.planes;
     work.bytes_read += sizeof(OwnerSlot);
-    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.record.slots[k].triangle()]);
+    fetch_plane(at_.record.slots[k].triangle());
     return at_.record.plane(k);
+  }
+  // `number`: in the list.
+  void fetch_plane(std::uint32_t number, bool has_vertices = false) {
+    ++work.planes;
+    work.vertices_bounded += has_vertices;
+    if (bin_.lists_fetches) result_.fetched.push_back({bin_.list[number], has_vertices});
   }
 
   // The positions that the fragment takes from owners. `contested`: bit k: owner k has positions in its mask.
@@ -259,12 +273,9 @@ class PooledComposer {
 
   // Bit k: owner k.
   void charge_contests(std::uint32_t contested) {
-    const auto contests = static_cast<std::uint64_t>(std::popcount(contested));
-    work.contests += contests, work.planes += contests;
-    work.bytes_read += contests * sizeof(OwnerSlot);
-    if (!bin_.lists_fetches) return;
+    work.contests += static_cast<std::uint64_t>(std::popcount(contested));
     for (std::uint32_t left = contested; left != 0; left &= left - 1)
-      result_.fetched.push_back(bin_.list[at_.record.slots[std::countr_zero(left)].triangle()]);
+      plane_of(static_cast<std::size_t>(std::countr_zero(left)));
   }
 
   // The contested positions that the fragment takes from owner k. At equal depth the triangle that comes first in the
@@ -285,11 +296,24 @@ class PooledComposer {
     float farthest = kInFront;
     for (std::size_t k = 0; k < at_.shape.owners; ++k) {
       ++work.bounds_found;
-      work.vertices_bounded += !at_.record.slots[k].is_merged();
-      plane_of(k);
+      work.bytes_read += sizeof(OwnerSlot);
+      fetch_plane(at_.record.slots[k].triangle(), !at_.record.slots[k].is_merged());
       farthest = std::max(farthest, at_.record.farthest(k));
     }
     closed.close(at_.index, farthest);
+    if (!bin_.watermarks && at_.shape.has_sums && hides_specks(farthest)) forget_specks();
+  }
+
+  // Does a pixel that is closed there hide all specks that it has seen?
+  bool hides_specks(float farthest) {
+    ++work.speck_depths;
+    work.bytes_read += sizeof(PixelSums);
+    return at_.record.head->nearest_speck > farthest;
+  }
+
+  void forget_specks() {
+    if (observer_) observer_->forgets_specks();
+    at_.forget_sums();
   }
 
   // ---- Retire: nothing can hide a surface any more ----
@@ -297,7 +321,7 @@ class PooledComposer {
   // Retires what is in front of the watermark, in all pixels.
   void collect(float watermark, ClosedDepth& closed) {
     work.words_scanned += pixels_.words.size();
-    ++result_.collections;
+    std::vector<std::uint32_t>& written = result_.collections.emplace_back();
     pixels_.pool.collected();
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       look_at(pixel);
@@ -307,7 +331,9 @@ class PooledComposer {
       const Candidates candidates = find_candidates(watermark);
       if (candidates.none()) continue;
       at_.open();
-      if (retire_final(candidates, watermark)) store(closed);
+      if (!retire_final(candidates, watermark)) continue;
+      store(closed);
+      written.push_back(pixel);
     }
   }
 
@@ -433,10 +459,11 @@ class PooledComposer {
 
   std::uint32_t trace_number(const Owner& owner) const { return bin_.list[owner.slot.triangle()]; }
 
-  // Of owners at equal depth, those become one that lie closest in the trace: the fewest triangles come between them.
-  std::uint32_t distance_in_trace(std::size_t i, std::size_t j) const {
-    const std::uint32_t one = trace_number(owners_[i]), other = trace_number(owners_[j]);
-    return std::max(one, other) - std::min(one, other);
+  // Are owners i and j as far apart in the trace as the other two, or farther?
+  bool is_as_far_in_trace(std::size_t i, std::size_t j, std::size_t first, std::size_t second) {
+    ++work.ties;
+    return distance_in_trace(trace_number(owners_[i]), trace_number(owners_[j])) >=
+           distance_in_trace(trace_number(owners_[first]), trace_number(owners_[second]));
   }
 
   void merge_closest() {
@@ -446,7 +473,7 @@ class PooledComposer {
     for (std::size_t j = 2; j < at_.shape.owners; ++j) {
       for (std::size_t i = 0; i < j; ++i) {
         const float loss = loss_of(owners_[i], owners_[j]);
-        if (loss > least || (loss == least && distance_in_trace(i, j) >= distance_in_trace(first, second))) continue;
+        if (loss > least || (loss == least && is_as_far_in_trace(i, j, first, second))) continue;
         least = loss, first = i, second = j;
       }
     }
@@ -484,8 +511,15 @@ class PooledComposer {
     if (!keeps_positions) at_.open();
     RecordShape with_sums = at_.shape;
     with_sums.has_sums = true;
-    if (!at_.has_room(with_sums)) return;  // it is lost
+    if (!at_.has_room(with_sums)) {
+      ++(*result_.maps.refusals)[at_.index], ++(*result_.maps.lost_specks)[at_.index];
+      return;
+    }
     at_.use_sums();
+    if (!bin_.watermarks) {
+      ++work.speck_depths;
+      at_.record.head->nearest_speck = lesser(at_.record.head->nearest_speck, fragment.centroid_z);
+    }
     FixedSum& facing = at_.record.head->sums.specks[fragment.front];
     const std::int32_t opposite = at_.record.head->sums.specks[!fragment.front].units;
     FinalSums<std::int32_t, std::uint32_t> sums = at_.sums();
@@ -510,8 +544,7 @@ class PooledComposer {
   float votes_for(const Fragment& speck) {
     if (at_.word().kind == PixelKind::untouched) return 3.0f;
     if (at_.word().kind == PixelKind::covered) {
-      ++work.planes;
-      if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word().number]);
+      fetch_plane(at_.word().number);
       return is_nearer_than(speck, at_.cover_depth().plane) ? 3.0f : 0.0f;
     }
     float votes = 0;

@@ -8,7 +8,8 @@
 // their bytes are free again. If nothing is final, the two owners of the pixel are merged whose depth planes are
 // closest at the means of the positions that they own. From then on they share a mean colour and one depth plane.
 //
-// Specks own no position. They are added at once, if the owners of the positions next to them do not hide them.
+// Specks own no position. They are added at once, if the owners of the positions next to them do not hide them. Where
+// nothing is final before the end, they are forgotten once surfaces close the pixel in front of all of them.
 //
 // Two estimates of a pixel are kept. The analytic one is far more accurate where visibility is simple, but where
 // hundreds of triangles meet in a pixel, it may be wrong about which specks are seen. Counting positions is never worse
@@ -31,13 +32,17 @@ namespace beampipe {
 struct PooledMaps {
   std::vector<float>& memory_chunks;  // chunks of the record that were read or written in memory
   std::vector<float>& record_bytes;   // the most that the record has had
+  // Of a frame's pool; of others they may be null.
+  std::vector<float>* refusals = nullptr;     // fragments for which a closed pool had no room
+  std::vector<float>* lost_specks = nullptr;  // how often it lost specks: a new one, or all before
 };
 
 // What was done, beside what is charged.
 struct PooledResult : OwnersResult {
-  std::uint64_t chunks_in_memory = 0;  // chunks of records that were read or written there
-  std::uint64_t collections = 0;       // each has read the words of all pixels
+  ChunkRequests spills;  // to records beyond a pool on chip
   PooledMaps maps;
+  // Each has read the words of all pixels, and written those of these pixels.
+  std::vector<std::vector<std::uint32_t>> collections;
   bool lists_visits = false;        // fill the list that follows
   std::vector<RecordVisit> visits;  // to all records, wherever they lie
   bool lists_claims = false;        // fill the list that follows

@@ -133,7 +133,9 @@ class OwnerColors {
   Area area_of(const Mask& owned, const Mask& all, const glm::vec2& middle, float width) {
     const auto count = static_cast<float>(owned.count());
     if (owned == all) return {middle, Footprint(width), count};
-    ++work_.measured, ++work_.sided;
+    ++work_.measured;
+    static const UnitCost of_footprint = footprint_cost(Words);
+    result_.decisions += of_footprint;
     const WideMask words = owned.wide();
     const SamplePattern* const patterns = bin_.positions.patterns.data();
     const PositionSums sums = position_sums(patterns, Words, words.words.data());
@@ -147,7 +149,7 @@ class OwnerColors {
 
   // May light vary by more in the area than is tolerated?
   bool varies(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
-    work_.ranges += bin_.shader.work(triangle).range;
+    result_.decisions += bin_.shader.work(triangle).range;
     const float range = bin_.shader.light_range(triangle, pixel, area.at.x, area.at.y, area.footprint, result_.texels);
     end_request(result_.texels);
     return range * (area.count / kPositions) > bin_.shading.tolerance;

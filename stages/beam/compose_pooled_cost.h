@@ -33,9 +33,8 @@ struct PooledWork {
   std::uint64_t finality_tests = 0;                    // of owners, against the watermark
   std::uint64_t farthest_found = 0;                    // farthest depths over an owner's positions
   std::uint64_t measured = 0;                          // owners whose mean position was found
-  std::uint64_t sided = 0;                             // of these, with the sides of their area
-  OperationCounts ranges{};                            // what it costs to find how far light may vary
   std::uint64_t pairs_compared = 0;                    // of owners
+  std::uint64_t ties = 0;                              // of these pairs, with the least loss so far
   std::uint64_t merges = 0;                            // of two owners
   std::uint64_t fractions = 0, order_tests = 0;        // to sort owners that become final
   std::uint64_t retirements = 0;                       // of one owner or of several at once
@@ -46,6 +45,7 @@ struct PooledWork {
   std::uint64_t speck_comparisons = 0;
   std::uint64_t specks_seen = 0;                    // some position next to them votes for them
   std::uint64_t specks_added = 0;                   // of these, specks that add to the pixel's area
+  std::uint64_t speck_depths = 0;                   // comparisons with the nearest depth of a pixel's specks
   std::uint64_t finished = 0;                       // pixels that were read at the end
   std::uint64_t limited = 0;                        // pixels whose estimates were compared
   std::uint64_t bytes_read = 0, bytes_written = 0;  // of words and records
@@ -135,6 +135,19 @@ inline OperationCounts merge(std::size_t words) {
   return cost;
 }
 
+// Of two pairs that lose the same, whose surfaces lie closer in the trace?
+inline OperationCounts tie() {
+  return of([](const Number&, OperationCounts& counts) {
+    const Integer number(0, counts);
+    static_cast<void>(distance_in_trace(number, number) < distance_in_trace(number, number));
+  });
+}
+
+// What part of what its triangle covers a surface shows.
+inline OperationCounts fraction() {
+  return of([](const Number& one, OperationCounts&) { area_of(one).fraction(); });
+}
+
 inline FinalSums<Integer, Bits> sums(OperationCounts& counts) {
   FinalSums<Integer, Bits> all{Integer(0, counts), {}};
   all.colors.fill(Bits(0, counts));
@@ -170,6 +183,12 @@ inline OperationCounts added_speck() {
 
 }  // namespace pooled_costs
 
+// Of a footprint: the squares of its positions, summed up, and its sides.
+inline OperationCounts footprint_cost(std::size_t words) {
+  OperationCounts cost = OperationCounts{.mul_add = 3} * (32 * words);
+  return cost += pooled_costs::sides();
+}
+
 template <std::size_t Words>
 void charge(const PooledWork& work, StageCounters& counters) {
   constexpr std::uint64_t kPositions = 32 * Words;
@@ -180,19 +199,16 @@ void charge(const PooledWork& work, StageCounters& counters) {
                                      of_votes = by_size(6, speck_votes_cost);
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
-                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_sides = sides(),
-                        of_pair = pair_cost(), of_merge = merge(Words), of_retirement = retirement(Words),
-                        of_bounds = plane_bounds_cost(), of_vertices = vertex_bounds_cost(),
-                        of_speck_test = speck_test_cost(), of_seen_speck = seen_speck(), of_added_speck = added_speck(),
-                        of_limit = limit_cost();
+                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_pair = pair_cost(),
+                        of_tie = tie(), of_merge = merge(Words), of_fraction = fraction(),
+                        of_retirement = retirement(Words), of_bounds = plane_bounds_cost(),
+                        of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(),
+                        of_seen_speck = seen_speck(), of_added_speck = added_speck(), of_limit = limit_cost();
   static const UnitCost of_meeting = of_masks(Words, [](const CountedMask&mask) { is_met(mask, mask); }),
                         of_win = of_masks(Words, [](const CountedMask&mask) { with_won(mask, mask, mask); }),
                         of_claim = of_masks(Words, [](const CountedMask&mask) { claim_of(mask, mask, mask).none(); }),
                         of_take = of_masks(Words, [](CountedMask mask) { take_from(mask, mask); });
-  constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfFraction{.special = 1},
-      kOfPosition{.add = 2},     // its x and y
-      kOfSquares{.mul_add = 3},  // of these
-      kOfFarther{.add = 1};      // than the owners before it
+  constexpr OperationCounts kOfComparison{.add = 1}, kOfPosition{.add = 2};  // its x and y
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
@@ -201,7 +217,10 @@ void charge(const PooledWork& work, StageCounters& counters) {
     counters.ops += of_join[states] * work.joins[states];
   // Finished pixels are known by their closed depths, too.
   const std::uint64_t looked_at = work.fragments + work.words_scanned + work.finished;
-  counters.ops += kOfHiddenTest * looked_at;
+  // Whether closed pixels hide something, shares of owners that become final, places in the trace, which owner is the
+  // farthest one, and which speck the nearest.
+  counters.ops +=
+      kOfComparison * (looked_at + work.order_tests + work.planes_compared + work.bounds_found + work.speck_depths);
   counters.ops += of_meeting * work.masks_tested;
   counters.ops += of_win * (work.wins + work.planes_compared);
   counters.ops += of_claim * work.masks;
@@ -216,16 +235,12 @@ void charge(const PooledWork& work, StageCounters& counters) {
   counters.ops += of_farthest * work.farthest_found;
   counters.ops += kOfPosition * (kPositions * work.measured);
   counters.ops += of_mean * work.measured;
-  counters.ops += kOfSquares * (kPositions * work.sided);
-  counters.ops += of_sides * work.sided;
-  counters.ops += work.ranges;
   counters.ops += of_pair * work.pairs_compared;
+  counters.ops += of_tie * work.ties;
   counters.ops += of_merge * work.merges;
-  counters.ops += kOfFraction * work.fractions;
-  counters.ops += kOfOrderTest * work.order_tests;
+  counters.ops += of_fraction * work.fractions;
   counters.ops += of_retirement * work.retired;
   counters.ops += of_bounds * work.bounds_found;  // their planes are among work.planes
-  counters.ops += kOfFarther * work.bounds_found;
   counters.ops += of_vertices * work.vertices_bounded;
   for (std::size_t planes = 0; planes < work.specks.size(); ++planes)
     counters.ops += of_votes[planes] * work.specks[planes];
@@ -236,7 +251,8 @@ void charge(const PooledWork& work, StageCounters& counters) {
   counters.bytes_read += (work.fragments - work.whole) * owners_fragment_bytes(Words) +
                          work.whole * kOwnersWholeFragmentBytes + looked_at * (sizeof(float) + kPixelWordBytes) +
                          work.bytes_read;
-  counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth));  // by its number in the list
+  counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth)) +  // by its number in the list
+                         work.vertices_bounded * sizeof(SetupTriangle::vertex_z);
   counters.bytes_written += work.bytes_written;
   counters.position_tests += kPositions * (work.planes_compared + work.farthest_found);
   counters.lanes_used += work.claims;

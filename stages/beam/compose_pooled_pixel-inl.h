@@ -104,6 +104,7 @@ class PixelAtHand {
       owned(k).store(view.owned(k));
     }
     view.head->sums = record.head->sums;
+    view.head->nearest_speck = record.head->nearest_speck;
     pixels_.records.give_back(word_->record_size, word_->number);
     word_->record_size = size;
     word_->number = larger;
@@ -117,6 +118,7 @@ class PixelAtHand {
       work_.bytes_read += sizeof(PixelSums);
     } else {
       record.head->sums = {};
+      record.head->nearest_speck = kNoDepth;
       shape.has_sums = true;
     }
   }
@@ -196,25 +198,35 @@ class PixelAtHand {
 
   // Free chunks are linked: each one that is taken says which one is the next. The last chunk of the record is linked
   // to the first one that is taken; the last one that is given back, to those that are free already.
+  //
+  // Chunks in memory are the first to be given back. What they held may still be needed; then it moves to chunks on
+  // chip that held something else. So many move at most, which is what is charged.
   HWY_INLINE void resize(std::uint32_t count) {
     ChunkPool::Chunks& chunks = word_->chunks;
     const ChunkPool::Chunks before = chunks;
     if (count == before.count) return;
     pixels_.pool.resize(chunks, count);
-    if (count > before.count) work_.bytes_read += (count - before.count) * pixels_.pool.link_bytes();
     if (before.count > 0) work_.bytes_written += pixels_.pool.link_bytes();
-    count_in_memory(chunks.in_memory > before.in_memory ? chunks.in_memory - before.in_memory
-                                                        : chunks.in_memory < before.in_memory);
+    if (count > before.count) {
+      work_.bytes_read += (count - before.count) * pixels_.pool.link_bytes();
+      if (chunks.in_memory > before.in_memory) count_spills({.reads = chunks.in_memory - before.in_memory + 0u});
+    } else if (chunks.in_memory < before.in_memory) {
+      const std::uint32_t moved = std::min<std::uint32_t>(before.in_memory, count) - chunks.in_memory;
+      work_.bytes_read += moved * kChunkBytes;
+      work_.bytes_written += moved * kChunkBytes;
+      count_spills({.reads = moved, .writes = 1});
+    }
   }
 
   void count_visit(bool is_write) {
-    if (result_.lists_visits) result_.visits.push_back({number, index, word_->chunks.count, is_write});
-    count_in_memory(word_->chunks.in_memory);
+    const ChunkPool::Chunks& chunks = word_->chunks;
+    if (result_.lists_visits) result_.visits.push_back({number, index, chunks.count, is_write});
+    if (chunks.in_memory > 0)
+      count_spills(is_write ? ChunkRequests{.writes = chunks.in_memory} : ChunkRequests{.reads = chunks.in_memory});
   }
-  void count_in_memory(std::uint32_t chunks) {
-    if (chunks == 0) return;
-    result_.chunks_in_memory += chunks;
-    result_.maps.memory_chunks[index] += static_cast<float>(chunks);
+  void count_spills(const ChunkRequests& requests) {
+    result_.spills += requests;
+    result_.maps.memory_chunks[index] += static_cast<float>(requests.all());
   }
 
   PooledPixels<Words>& pixels_;

@@ -138,6 +138,12 @@ Float merge_loss(const PlacedSurface<Float>& one, const PlacedSurface<Float>& ot
          (depth_gap(one.plane, other.plane, one.u, one.v) + depth_gap(one.plane, other.plane, other.u, other.v));
 }
 
+// Of surfaces at equal depth, those become one that lie closest in the trace: the fewest triangles come between them.
+template <class Int>
+Int distance_in_trace(const Int& one, const Int& other) {
+  return greater(one, other) - lesser(one, other);
+}
+
 inline constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive
 
 // The parts of two surfaces in their mean colour, and the error of both together. The mean is weighted by areas. Once
@@ -174,12 +180,6 @@ std::array<Bits, 2> merged_slot(const Bits& number, const MergedParts<Float>& pa
 }
 
 // ---- Specks ----
-
-// Does a speck at (u, v) with this depth lie in front of a surface or, as part of a smooth one, hardly behind it?
-template <class Float>
-bool is_on_or_before(Float depth, const DepthPlane<Float>& surface, Float u, Float v) {
-  return depth <= depth_at(surface, u, v) + Float(kSurfaceReach) * (magnitude(surface.dzdu) + magnitude(surface.dzdv));
-}
 
 // What sums are rounded by to which a speck is added.
 template <class Float>

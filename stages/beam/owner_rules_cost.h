@@ -5,7 +5,9 @@
 #include <cstdint>
 
 #include "stages/beam/owner_rules.h"
+#include "stages/beam/specks_cost.h"
 #include "stages/cost/plane_cost.h"
+#include "stages/data/position_set.h"
 
 namespace beampipe {
 
@@ -45,14 +47,19 @@ inline OperationCounts pair_cost() {
   });
 }
 
-// Per speck: the positions next to it and their states, of so many bits. Per comparison with an owner: the test.
-inline OperationCounts speck_votes_cost(std::size_t bits) {
-  return {.add = 3, .bit = 3 * 2 * bits, .fetch = 3, .convert = 2};
-}
-inline OperationCounts speck_test_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts), half(0.5f);
-    is_on_or_before(one, DepthPlane<Counted<float>>{one, one, one}, one - half, one - half);
+// Per speck: the three positions next to it are looked up, and then their states, a bit in each plane; and the sum of
+// their votes.
+inline OperationCounts speck_votes_cost(std::size_t planes) {
+  return count_operations([&](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    for (int axis = 0; axis < 2; ++axis) PositionSet::place_of(one);
+    counts.fetch += 1 + 3;
+    const Counted<std::uint32_t> word(0, counts);
+    Counted<float> votes(0.0f);
+    for (int position = 0; position < 3; ++position) {
+      for (std::size_t p = 0; p < planes; ++p) word >> 0 & word;
+      votes = votes + one;
+    }
   });
 }
 

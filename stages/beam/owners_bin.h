@@ -39,10 +39,17 @@ struct OwnersBin {
   const PixelObservers* observers = nullptr;  // who looks at the pixels; null: nobody
 };
 
+// An owner's depth plane was computed again and, with the depths of its vertices, the bounds of its depth.
+struct DepthFetch {
+  std::uint32_t triangle;
+  bool has_vertices = false;
+};
+
 // What was done, beside what is charged.
 struct OwnersResult {
   std::vector<ShadedTriangle> shaded;  // once for each time that one was shaded
-  std::vector<std::uint32_t> fetched;  // triangles, once for each time that an owner's depth plane was computed again
+  OperationCounts decisions{};         // of the shader: the sides of footprints, and how far light may vary there
+  std::vector<DepthFetch> fetched;
   std::vector<float>* shadings = nullptr;  // by pixel, how often surfaces that are not flat were shaded; or null
   TexelRequests* texels = nullptr;         // where shading adds a request of each invocation; null: nowhere
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "simd/depth_plane.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
 #include "simd/wide_mask.h"
@@ -15,6 +16,13 @@ namespace beampipe {
 // far behind that surface, in pixels of the surface's slope: a quarter of the distance between positions of a 256-bit
 // mask.
 inline constexpr float kSurfaceReach = 1.0f / 64.0f;
+
+// Does a speck at (u, v), in pixels from the pixel's centre, lie in front of a surface or, as part of a smooth one,
+// hardly behind it?
+template <class Float>
+bool is_on_or_before(Float depth, const DepthPlane<Float>& surface, Float u, Float v) {
+  return depth <= depth_at(surface, u, v) + Float(kSurfaceReach) * (magnitude(surface.dzdu) + magnitude(surface.dzdv));
+}
 
 // All specks that have the same nearest position may together cover at most this many times a position's share of the
 // pixel; if they cover more, they are several layers. About twice a position's share is nearer to it than to any other

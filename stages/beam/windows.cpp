@@ -8,15 +8,14 @@
 
 namespace beampipe {
 
-Windows::Windows(const std::vector<Pair>& pairs, const ABuffer& buffer, std::uint32_t record_bytes, std::size_t most)
+Windows::Windows(const std::vector<Pair>& pairs, const ABuffer& buffer, std::uint32_t record_bytes)
     : largest(buffer.first.size() - 1),
       taken(buffer.first.size() - 1),
       looked_at(buffer.first.size() - 1),
       pairs_(pairs),
       buffer_(buffer),
       next_(buffer.first.begin(), buffer.first.end() - 1),
-      record_bytes_(record_bytes),
-      most_(most) {
+      record_bytes_(record_bytes) {
   for (std::uint32_t pixel = 0; pixel < next_.size(); ++pixel)
     if (buffer.record_count(pixel) > 0) waiting_.push_back(pixel);
 }
@@ -30,7 +29,7 @@ void Windows::take(std::uint32_t pixel, WindowsWork& work, std::vector<Pair>& wi
   do {
     indices_.push_back(buffer_.records[next++]);
     farthest = greater(farthest, pairs_[indices_.back()].farthest);
-    if (next == end || indices_.size() == most_) break;
+    if (next == end) break;
     belongs = overlaps(pairs_[buffer_.records[next]].nearest, farthest);
     ++work.range_tests;
   } while (belongs);

@@ -3,13 +3,9 @@
 // A window is a run of a pixel's list whose depth ranges overlap, so windows lie strictly behind each other. Pixels are
 // composed one window at a time. Once all positions are taken, farther windows are skipped. Each record is read only
 // once: the record that ends a window starts the next one.
-//
-// Windows may have a limit, to show what they are worth: then several may overlap, and the order of nearest depths
-// decides between them.
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -32,14 +28,11 @@ struct WindowsWork {
   std::uint64_t order_tests = 0;  // to sort a window into primitive order
 };
 
-inline constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();  // of pairs in a window
-
 class Windows {
  public:
   // `buffer` sorts `pairs` by their nearest depth; both must outlive this object. `record_bytes`: size of a pair in the
-  // buffer, without its link. `most`: records in a window, at least 1.
-  Windows(const std::vector<Pair>& pairs, const ABuffer& buffer, std::uint32_t record_bytes,
-          std::size_t most = kAnyNumber);
+  // buffer, without its link.
+  Windows(const std::vector<Pair>& pairs, const ABuffer& buffer, std::uint32_t record_bytes);
 
   // Replaces `window` by the next windows of all pixels that have records left and for which is_open(pixel) is true:
   // pixel by pixel, and in primitive order within each. If a pixel's first window is a single pair that covers the
@@ -69,7 +62,6 @@ class Windows {
   std::vector<std::uint32_t> waiting_;            // pixels that have records left
   std::vector<std::uint32_t> indices_, scratch_;  // of one window
   std::uint32_t record_bytes_;
-  std::size_t most_;
 };
 
 }  // namespace beampipe

@@ -30,6 +30,13 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "beam in near-first order"},
       {"record_bytes", "bytes", "the most that the pixel's record has had, wherever it lies",
        "beam in near-first and streaming order"},
+      {"refusals", "fragments",
+       "fragments for which the frame's pool had no room: surfaces of the pixel were merged, or "
+       "the fragment was lost",
+       "beam in streaming order"},
+      {"lost_specks", "losses",
+       "how often small fragments were lost because the frame's pool was full: a new one, or those of the pixel so far",
+       "beam in streaming order"},
       {"shadings", "shadings", "how often surfaces with a material were shaded", "beam in both orders of one pass"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},
@@ -83,8 +90,8 @@ const std::vector<FrameCounterInfo>& frame_counters() {
       {"buffers", "bytes",
        "peak size of every buffer; for a buffer that each bin has, its size in the bin that needs the most"},
       {"peak_bytes_per_pixel", "bytes per pixel",
-       "size of a technique's framebuffer, plus its A-buffer and translucent layer in the frame where these are "
-       "largest"},
+       "size of a technique's framebuffer, plus its A-buffer, translucent layer and spilled records in the frame where "
+       "these are largest"},
       {"on_chip_bytes_per_pixel", "bytes per pixel",
        "size of all buffers that a bin has on chip (open pixels, closed depths, queues, windows, batches), each at its "
        "peak in the bin that needs the most, over the pixels of the largest bin"},

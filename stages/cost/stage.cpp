@@ -52,9 +52,10 @@ constexpr std::array<StageInfo, kStageCount> kStages = {{
      "positions whose depths are compared (beam:order=sorted); merged fragments (casav, alpha); fragments that take a "
      "position (beam, z3)",
      "positions of all fragments (beam:order=sorted); all fragments (others)"},
-    {StageId::alpha_test, "alpha_test", fragments, "#c3d56b", kNo, kYes,
-     items | (kArithmetic & ~(bit | convert)) | kMemory | texels | lanes, "fragments of cutouts, counted in each pass",
-     "those of which a sample is left", "fragments of cutouts", "four invocations for each of them"},
+    {StageId::alpha_test, "alpha_test", fragments, "#c3d56b", kNo, kYes, items | kArithmetic | kMemory | texels | lanes,
+     "fragments of cutouts, counted in each pass", "those of which a sample is left",
+     "fragments of cutouts, or their samples (alpha=sample)",
+     "four invocations for each of their quads, or for each sample that a quad has"},
     {StageId::depth_test, "depth_test", visibility, "#59a14f", kYes, kNo,
      items | mul_add | add | convert | kMemory | lanes, "samples that are tested, counted in each pass",
      "samples that pass", "samples that are tested", "all samples of the fragments' cells"},

@@ -193,6 +193,11 @@ void PixelObserver::adds_speck(std::uint32_t triangle, double area, const glm::v
   finals_.push_back({{{fragment_of(triangle), 1.0, color}}, area, 0});
 }
 
+void PixelObserver::forgets_specks() {
+  for (const Final& speck : finals_) history.fragments[speck.surface.front().fragment].fate = Fate::speck_hidden;
+  finals_.clear();
+}
+
 void PixelObserver::finishes() {
   for (const Final& each : finals_)
     for (const HistoryTerm& part : each.surface) add_term(part.fragment, each.area * part.weight, part.color);

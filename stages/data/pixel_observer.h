@@ -59,6 +59,9 @@ class PixelObserver {
   // A fragment without positions is visible, and adds this to the analytic estimate.
   void adds_speck(std::uint32_t triangle, double area, const glm::vec3& color);
 
+  // All of these so far are hidden or lost after all. No surface is final yet.
+  void forgets_specks();
+
   // All surfaces are final. The weights are their areas.
   void finishes();
 

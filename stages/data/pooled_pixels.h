@@ -35,11 +35,12 @@ namespace beampipe {
 // Finished pixels are known by their closed depth, which is in front of everything.
 inline constexpr std::uint32_t kPixelWordBytes = 6;
 inline constexpr std::uint32_t kTriangleBits = 23, kOwnerCountBits = 5, kFlagBits = 3, kAreaBits = 16;
-// Of a bin's pool, and of a frame's.
-inline constexpr std::uint32_t kChunkNumberBits = 16, kFrameChunkNumberBits = 23;
+// Of a bin's pool, and of a frame's, where nothing is final before the end, so that a flag is left for the number.
+inline constexpr std::uint32_t kChunkNumberBits = 16, kFrameChunkNumberBits = 24;
 // One bit tells records from what takes less, where a second one tells untouched pixels from covered ones.
 static_assert(2 + kTriangleBits <= 8 * kPixelWordBytes);
-static_assert(1 + kFrameChunkNumberBits + kOwnerCountBits + kFlagBits + kAreaBits <= 8 * kPixelWordBytes);
+static_assert(1 + kChunkNumberBits + kOwnerCountBits + kFlagBits + kAreaBits <= 8 * kPixelWordBytes);
+static_assert(1 + kFrameChunkNumberBits + kOwnerCountBits + kFlagBits - 1 + kAreaBits <= 8 * kPixelWordBytes);
 
 // A chunk, and the number of the record's next chunk or, if it is free, of the next free one.
 inline constexpr std::uint32_t kChunkBytes = 16, kChunkLinkBytes = 2, kFrameChunkLinkBytes = 3;
@@ -155,6 +156,14 @@ struct PoolClaim {
   std::int32_t chunks = 0;
 };
 
+// Chunks that were read and written in memory.
+struct ChunkRequests {
+  std::uint64_t reads = 0, writes = 0;
+
+  void operator+=(const ChunkRequests& more) { reads += more.reads, writes += more.writes; }
+  std::uint64_t all() const { return reads + writes; }
+};
+
 // One access to the record of a pixel.
 struct RecordVisit {
   std::uint32_t key = 0;     // the number of the triangle in the list for which it was visited
@@ -181,6 +190,9 @@ struct PixelWord {
 template <std::size_t Words>
 struct RecordHead {
   PixelSums sums;
+  // In a frame's pool, the nearest depth of a speck. It has room in the sums of final colours by positions: all three
+  // are 0 as long as nothing is final.
+  float nearest_speck;
   std::uint32_t empty[Words], final[Words];  // positions
 };
 

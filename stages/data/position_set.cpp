@@ -40,8 +40,7 @@ PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(
 }
 
 const std::array<std::uint8_t, 3>& PositionSet::nearest_to(float u, float v) const {
-  const auto place = [](float x) { return std::clamp(static_cast<int>(x * kPlaces), 0, kPlaces - 1); };
-  return nearest[static_cast<std::size_t>(place(v) * kPlaces + place(u))];
+  return nearest[static_cast<std::size_t>(place_of(v) * kPlaces + place_of(u))];
 }
 
 const PositionSet& cell_positions(int count) {

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "simd/sample_pattern.h"
+#include "simd/scalar.h"
 #include "simd/wide_mask.h"
 
 namespace beampipe {
@@ -20,6 +22,13 @@ struct PositionSet {
 
   explicit PositionSet(std::vector<SamplePattern> patterns);
   int count() const { return static_cast<int>(patterns.size()) * kMaxMaskSamples; }
+  // The place along one axis. For numbers and for numbers that count.
+  template <class Float>
+  static auto place_of(const Float& x) {
+    const auto place = to_integer(x * Float(kPlaces));
+    using Int = std::remove_const_t<decltype(place)>;
+    return lesser(greater(place, Int(0)), Int(kPlaces - 1));
+  }
   // (u, v): pixels from the pixel's upper left corner, 0..1.
   const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;
 };

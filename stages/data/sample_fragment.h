@@ -58,4 +58,10 @@ struct SampleFragment {
 // Size in the modelled machine: a pair with a 16-bit coverage mask.
 inline constexpr std::uint64_t kSampleFragmentBytes = kPairBytes + 2;
 
+// Fragments of a quad follow each other.
+template <class Fragments>
+bool starts_quad(const Fragments& fragments, std::size_t i) {
+  return i == 0 || fragments[i].quad != fragments[i - 1].quad;
+}
+
 }  // namespace beampipe

@@ -79,8 +79,8 @@ struct SetupSurface {
   bool is_opaque = true;                    // it hides what lies behind it, wherever it covers
   bool turned = false;                      // the viewer sees its back: vertices' normals are turned around
   bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used
-  glm::vec4 tangent{0.0f};                  // of the triangle, w: sign of the bitangent; where a normal texture needs it
-  float anchor_x = 0, anchor_y = 0;         // pixels, frame coordinates
+  glm::vec4 tangent{0.0f};           // of the triangle, w: sign of the bitangent; where a normal texture needs it
+  float anchor_x = 0, anchor_y = 0;  // pixels, frame coordinates
   BarycentricPlanes<float> planes;
 };
 

@@ -6,6 +6,7 @@
 #include "stages/cost/counting.h"
 #include "stages/data/pair.h"
 #include "stages/data/pixel_formats.h"
+#include "stages/data/sample_fragment.h"
 #include "stages/surface/surface_shader.h"
 
 namespace beampipe {
@@ -68,11 +69,6 @@ Invocations one_by_one(const TileShader& shader, const Items& items, WorkOf&& wo
     result.input_bytes += work.input_bytes * (end - first);
   }
   return result;
-}
-
-template <class Items>
-bool starts_quad(const Items& fragments, std::size_t i) {
-  return i == 0 || fragments[i].quad != fragments[i - 1].quad;
 }
 
 // The same in 2x2 quads: all four invocations compute.

@@ -13,6 +13,30 @@ namespace {
 
 constexpr int kDroppedBits = 7;                 // of a float's 31 bits without its sign
 constexpr std::uint32_t kKeyOfZero = 1u << 23;  // the far plane; magnitudes up to 2 have 23 bits
+constexpr std::uint32_t kLastKey = (1u << 24) - 1;
+
+struct Entry {
+  std::uint32_t key, place;  // place: in the list
+};
+
+// By key_of(triangle).
+template <class KeyOf>
+std::vector<Entry> sorted(const SetupTriangles& triangles, const TriangleList& list, KeyOf&& key_of) {
+  std::vector<Entry> entries(list.size()), other(list.size());
+  constexpr std::size_t kAhead = 12;  // triangles
+  for (std::uint32_t i = 0; i < list.size(); ++i) {
+    if (i + kAhead < list.size()) prefetch(triangles.triangles[list[i + kAhead]]);
+    entries[i] = {key_of(triangles.triangles[list[i]]), i};
+  }
+  for (int shift = 0; shift < 24; shift += 8) {
+    std::uint32_t first[257] = {};
+    for (const Entry& entry : entries) ++first[(entry.key >> shift & 0xff) + 1];
+    for (int digit = 0; digit < 256; ++digit) first[digit + 1] += first[digit];
+    for (const Entry& entry : entries) other[first[entry.key >> shift & 0xff]++] = entry;
+    entries.swap(other);
+  }
+  return entries;
+}
 
 // The nearest depth of the triangle in the tile, as pair_bounds for a pixel. Both round, so this one has a margin:
 // eight roundings of the largest sum that can occur. Without it, one triangle in a thousand is nearer by a rounding
@@ -45,22 +69,8 @@ float nearest_of(std::uint32_t key) {
 
 OrderedList bin_sort(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                      StageCounters& counters) {
-  struct Entry {
-    std::uint32_t key, place;
-  };
-  std::vector<Entry> entries(list.size()), sorted(list.size());
-  constexpr std::size_t kAhead = 12;  // triangles
-  for (std::uint32_t i = 0; i < list.size(); ++i) {
-    if (i + kAhead < list.size()) prefetch(triangles.triangles[list[i + kAhead]]);
-    entries[i] = {sort_key(nearest_in(triangles.triangles[list[i]], tile)), i};
-  }
-  for (int shift = 0; shift < 24; shift += 8) {
-    std::uint32_t first[257] = {};
-    for (const Entry& entry : entries) ++first[(entry.key >> shift & 0xff) + 1];
-    for (int digit = 0; digit < 256; ++digit) first[digit + 1] += first[digit];
-    for (const Entry& entry : entries) sorted[first[entry.key >> shift & 0xff]++] = entry;
-    entries.swap(sorted);
-  }
+  const std::vector<Entry> entries =
+      sorted(triangles, list, [&](const SetupTriangle& triangle) { return sort_key(nearest_in(triangle, tile)); });
   OrderedList ordered;
   ordered.triangles.reserve(list.size());
   ordered.watermarks.reserve(list.size());
@@ -68,7 +78,20 @@ OrderedList bin_sort(const SetupTriangles& triangles, const TriangleList& list, 
     ordered.triangles.push_back(list[entry.place]);
     ordered.watermarks.push_back(nearest_of(entry.key));
   }
-  charge_bin_sort(list.size(), counters);
+  static const UnitCost of_key = nearest_key_cost();
+  charge_bin_sort(list.size(), of_key, counters);
+  return ordered;
+}
+
+TriangleList sort_far_to_near(const SetupTriangles& triangles, const TriangleList& list, StageCounters& counters) {
+  TriangleList ordered;
+  ordered.reserve(list.size());
+  for (const Entry& entry : sorted(triangles, list, [](const SetupTriangle& triangle) {
+         return kLastKey - sort_key(mean_depth(triangle.vertex_z));
+       }))
+    ordered.push_back(list[entry.place]);
+  static const UnitCost of_key = mean_key_cost();
+  charge_bin_sort(list.size(), of_key, counters);
   return ordered;
 }
 

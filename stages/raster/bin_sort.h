@@ -32,4 +32,8 @@ float nearest_of(std::uint32_t key);
 OrderedList bin_sort(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                      StageCounters& counters);
 
+// The triangles far to near, as programs sort what they blend: by the mean depth of their vertices, which is the same
+// in all bins. Among equal keys the earlier triangle comes first. Counts the same.
+TriangleList sort_far_to_near(const SetupTriangles& triangles, const TriangleList& list, StageCounters& counters);
+
 }  // namespace beampipe

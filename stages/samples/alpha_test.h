@@ -1,9 +1,6 @@
 // alpha_test: sample fragments -> sample fragments without cutouts.
 //
-// Alpha is tested once per fragment, where it is shaded, and decides about all of its samples. Alpha to coverage takes
-// that part of the samples instead.
-//
-// Source: OpenGL 4.6 core specification, section 17.3.1 (alpha to coverage).
+// Sources: OpenGL 4.6 core specification, section 17.3.1 (alpha to coverage); stages/surface/hashed_alpha.h.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,7 +12,12 @@
 
 namespace beampipe {
 
-enum class AlphaCoverage { test, to_coverage };
+enum class AlphaCoverage {
+  test,         // once per fragment, where it is shaded, for all of its samples
+  by_sample,    // at each sample
+  hashed,       // as to_coverage, with thresholds of samples from a hash of the place on the surface
+  to_coverage,  // alpha is the part of the samples that is taken: the same samples for all surfaces
+};
 
 struct AlphaTest {
   const Tile& tile;

@@ -34,8 +34,10 @@ inline FootprintSides footprint_sides(const TextureSlopes& slopes, const glm::ve
   return {along / size, across / size, std::sqrt(glm::dot(along, along)), std::sqrt(glm::dot(across, across))};
 }
 
-// The distance of taps in texels of their level, at most. Bilinear taps at this distance leave no gaps.
-inline constexpr float kTapDistance = 2.0f;
+// The distance of taps in texels of their level, at most. The farther they lie from each other, the finer the level;
+// but at two texels they would read each second texel alone. At this distance the weights of texels are within a fifth
+// of each other. A single tap reaches as far as its four texels.
+inline float tap_distance(int most_taps) { return most_taps == 1 ? 2.0f : 1.25f; }
 
 // How much wider than the side of a footprint its taps lie so that they have the second moment of the side. The
 // texels of a level and the bilinear filter between them have blurred the image already. `side`: in texels of the
@@ -77,7 +79,9 @@ inline FilterPlan footprint_plan(const MipChain& chain, const Texture& texture, 
   }
   plan.filter = Filter::linear;
   float length = sides.length, width = sides.width;
-  const auto taps_of = [](float side) { return static_cast<float>(1 + floor_of(side / kTapDistance)); };
+  const auto taps_of = [distance = tap_distance(most_taps)](float side) {
+    return static_cast<float>(1 + floor_of(side / distance));
+  };
   while (taps_of(length) * taps_of(width) > static_cast<float>(most_taps) && plan.level + 1 < chain.levels.size())
     ++plan.level, length /= 2, width /= 2;
   if (taps_of(length) * taps_of(width) > static_cast<float>(most_taps)) return plan;

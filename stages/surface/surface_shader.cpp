@@ -76,6 +76,12 @@ Texture for_areas(Texture texture) {
   return texture;
 }
 
+// What the rules make of a texture's sampler. `taps`: ShadingRules::texture_taps.
+Texture filtered_by(Texture texture, int taps) {
+  if (taps == kAnisotropic) texture.minify = Filter::linear, texture.mip = MipFilter::linear, texture.anisotropy = 16;
+  return texture;
+}
+
 // Light that a flat triangle reflects, by Lambert's law.
 glm::vec3 flat_color(const FlatAttributes& flat, const Lighting& lighting) {
   if (!flat.lit) return flat.kd;
@@ -350,12 +356,24 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
 
 float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
-  return alpha_there(triangle, place, footprint,
-                     [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
-                       return filtered(textures_->chain(texture.image, ColorSpace::srgb), texture, uv, slopes,
-                                       noting(texels, texture.image, ColorSpace::srgb))
-                           .a;
-                     });
+  return alpha_there(
+      triangle, place, footprint, [&](const Texture& given, const glm::vec2& uv, const TextureSlopes& slopes) {
+        const Texture texture = filtered_by(given, rules_.texture_taps);
+        const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+        const FilterPlan plan = rules_.texture_taps > 0 ? footprint_plan(chain, texture, slopes, rules_.texture_taps)
+                                                        : filter_plan(chain, texture, slopes);
+        return filtered(chain, texture, uv, plan, noting(texels, texture.image, ColorSpace::srgb)).a;
+      });
+}
+
+SurfaceShader::AlphaPlace SurfaceShader::alpha_place(std::uint32_t triangle, const ShadingPlace& place,
+                                                     const Footprint& footprint) const {
+  AlphaPlace found;
+  alpha_there(triangle, place, footprint, [&](const Texture&, const glm::vec2& uv, const TextureSlopes& slopes) {
+    found = {{uv.x, uv.y}, {slopes.dx.x, slopes.dx.y}, {slopes.dy.x, slopes.dy.y}};
+    return 1.0f;
+  });
+  return found;
 }
 
 SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place,
@@ -589,7 +607,8 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
               {reads_set[0] ? &points[0][i] : nullptr, reads_set[1] ? &points[1][i] : nullptr});
   const bool is_kept = texels && texels->are_kept();
   const int taps = rules_.colors == SurfaceColors::by_pixel ? 0 : rules_.texture_taps;
-  for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
+  for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& given, auto texel) {
+    const Texture texture = filtered_by(given, taps);
     const ColorSpace space = space_of(role);
     const MipChain& chain = textures_->chain(texture.image, space);
     const auto& at = points[texture.uv_set];

@@ -56,6 +56,8 @@ enum class MaterialStorage { none, gbuffer };
 // pixel, and what is left of their errors is visibility.
 enum class SurfaceColors { by_place, by_pixel };
 
+inline constexpr int kAnisotropic = -1;
+
 // How a technique shades.
 struct ShadingRules {
   Derivatives derivatives = Derivatives::analytic;
@@ -63,7 +65,7 @@ struct ShadingRules {
   AccumulatorFormat stored_as = AccumulatorFormat::fp32;  // colours are rounded to it
   SurfaceColors colors = SurfaceColors::by_place;
   // Textures are means over footprints of at most so many taps: 1, 4 or 16 (stages/surface/footprint_filter.h). 0: as
-  // samplers ask for.
+  // samplers ask for; kAnisotropic: by trilinear samplers with an anisotropy of 16, whatever they ask for.
   int texture_taps = 0;
   bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };
@@ -108,6 +110,12 @@ class SurfaceShader {
   // Alpha at a place, whatever SurfaceColors says. `footprint`, `texels`: as above. 1 for opaque triangles.
   float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
               TexelRequests* texels = nullptr) const;
+
+  // Where alpha's texture is read, and how that changes over the footprint; 0 without one.
+  struct AlphaPlace {
+    std::array<float, 2> uv{}, right{}, down{};
+  };
+  AlphaPlace alpha_place(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint) const;
 
   // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
   // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have.
@@ -273,6 +281,10 @@ class TileShader {
   float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
               TexelRequests* texels = nullptr) const {
     return shader_->alpha(triangle, place(pixel, u, v), footprint, texels);
+  }
+  SurfaceShader::AlphaPlace alpha_place(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
+                                        const Footprint& footprint) const {
+    return shader_->alpha_place(triangle, place(pixel, u, v), footprint);
   }
   SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
                                         const Footprint& footprint, TexelRequests* texels = nullptr) const {

@@ -80,9 +80,12 @@ Trace lit_trace() {
   return scene.trace;
 }
 
+// So many small parts that a frame's pool runs out, also for small fragments.
+Trace full_trace() { return parts_of_pixels(2, 20, 5); }
+
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
-  for (const Trace& trace : {test_trace(), lit_trace()})
+  for (const Trace& trace : {test_trace(), lit_trace(), full_trace()})
     for (const std::string& spec : example_specs()) {
       History history;
       for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)

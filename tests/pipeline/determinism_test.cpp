@@ -71,6 +71,7 @@ void expect_same_in_any_tile(const Trace& trace) {
       if (has_open_pixels(spec)) continue;
       for (std::size_t i = 0; i < found.stages.size(); ++i) {
         StageCounters a = found.stages[i], b = expected.stages[i];
+        if (a.stage == StageId::bin_sort) continue;  // of the triangles of each tile
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
         if (spec.starts_with("casav") && a.stage == StageId::beam_fragment)
           a.ops = b.ops = {};  // the edges of a triangle are prepared for masks once per tile

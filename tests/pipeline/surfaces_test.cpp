@@ -175,6 +175,30 @@ TEST(Surfaces, BeamComposesSheetsInAnyOrderOfDraws) {
   } while (std::next_permutation(stack.begin(), stack.end(), by_alpha));
 }
 
+// Far to near, before or after an opaque surface in the middle, msaa blends exactly but for rounding to fp16.
+TEST(Surfaces, SortedMsaaComposesSheetsInAnyOrderOfDraws) {
+  const glm::dvec3 expected = composed(kStack);
+  std::vector<Sheet> stack = kStack;
+  const auto by_alpha = [](const Sheet& a, const Sheet& b) { return a.color.a < b.color.a; };
+  std::sort(stack.begin(), stack.end(), by_alpha);
+  double worst_in_order = 0;
+  do {
+    const Trace trace = sheets(stack);
+    for (const char* spec : {"msaa:4,blend=sorted", "msaa:32,blend=sorted", "msaa:4,prepass,blend=sorted"})
+      expect_near(mean_color(rendered(spec, trace).image), expected, 2e-3);
+    const glm::dvec3 in_order(mean_color(rendered("msaa:4", trace).image));
+    worst_in_order = std::max(worst_in_order, glm::distance(in_order, expected));
+  } while (std::next_permutation(stack.begin(), stack.end(), by_alpha));
+  EXPECT_GT(worst_in_order, 0.1);
+
+  SurfaceTrace scene(16, 16);
+  scene.add_rectangle(-1, -1, 17, 17, 0.2, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  scene.add_rectangle(-1, -1, 17, 17, 0.8, unlit_material({0, 0, 1, 0.5f}, AlphaMode::blend));
+  scene.add_rectangle(-1, -1, 17, 17, 0.5, unlit_material({0, 1, 0, 1}));
+  const glm::vec3 found = mean_color(rendered("msaa:4,blend=sorted", scene.trace).image);
+  expect_near(found, {0.5, 0.5, 0}, 1e-3);
+}
+
 // Sheets in front of each other in one draw are as independent as those of several draws.
 TEST(Surfaces, BeamComposesTheSheetsOfOneDraw) {
   for (const double alpha : {0.25, 0.5, 0.75}) {
@@ -320,6 +344,15 @@ double squared_error(const Image& a, const Image& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
   return sum;
+}
+
+// Whether once is enough is asked in the shader, where fixed functions take time too.
+TEST(Surfaces, TheShaderPaysForItsDecisions) {
+  const Trace trace = make_scene("bumps", {.triangles = 1000, .width = 48, .height = 27});
+  const FrameResult asked = rendered("beam:tolerance=1000", trace), once = rendered("beam:at=visible", trace);
+  EXPECT_EQ(stage_of(asked, "shade").items_in, stage_of(once, "shade").items_in);
+  EXPECT_GT(stage_of(asked, "shade").ops.total(), 15 * stage_of(once, "shade").ops.total() / 10);
+  EXPECT_LE(stage_of(asked, "compose").ops.total(), stage_of(once, "compose").ops.total());
 }
 
 // Ropes with highlights narrower than a pixel.

@@ -96,4 +96,15 @@ inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, 
   return pixel_trace(width, height, triangles, glm::vec3(0.25f, 0.5f, 0.75f));
 }
 
+// Every pixel is full of so many parts on each side, each of which is two triangles.
+inline Trace parts_of_pixels(int side, int parts, std::uint32_t seed) {
+  RandomNumbers random(seed);
+  std::vector<PixelSpaceTriangle> triangles;
+  const auto at = [&](int i) { return static_cast<double>(i) / parts; };
+  for (int y = 0; y < side * parts; ++y)
+    for (int x = 0; x < side * parts; ++x)
+      append(triangles, quad(at(x), at(y), at(x + 1), at(y + 1), 0.5, random.vector(glm::dvec3(0), glm::dvec3(1))));
+  return pixel_trace(static_cast<std::uint32_t>(side), static_cast<std::uint32_t>(side), triangles);
+}
+
 }  // namespace beampipe

@@ -37,16 +37,6 @@ RandomEdge random_edge(Random& random) {
   return edge;
 }
 
-TEST(MaskTable, OppositeEntriesAreComplements) {
-  const MaskTable table(hammersley_pattern());
-  for (int angle = 0; angle < kTableAngles; ++angle)
-    for (int r = 0; r < kTableDistances; ++r) {
-      const int opposite = (angle + kTableAngles / 2) % kTableAngles;
-      ASSERT_EQ(table.words()[angle * kTableDistances + r],
-                ~table.words()[opposite * kTableDistances + kTableDistances - 1 - r]);
-    }
-}
-
 TEST(MaskTable, EntriesGrowWithTheDistance) {
   const MaskTable table(hammersley_pattern());
   for (int angle = 0; angle < kTableAngles; ++angle) {
@@ -80,7 +70,7 @@ std::vector<float> border_distances() {
 
 TEST(MaskTable, ComplementsWhereTheColumnChanges) {
   const MaskTable table(hammersley_pattern());
-  for (std::int32_t angle = 0; angle < kTableAngles / 2; ++angle)
+  for (std::int32_t angle = 0; angle < kTableAngles; ++angle)
     for (const float distance : border_distances())
       ASSERT_EQ(edge_mask({angle, 0u, distance}, table), ~edge_mask({angle, ~0u, distance}, table))
           << angle << ", " << distance;
@@ -107,14 +97,14 @@ TEST(MaskTable, EveryTargetEqualsTheFormula) {
   });
 }
 
-// A sample that the table puts on the wrong side of an edge lies within 0.0458 px of the edge: half a step of distance,
-// 1 / (64 sqrt 2) px, and half a step of angle, pi / 64, seen from at most half a diagonal away. On average a quarter
-// of a sample is on the wrong side.
+// A sample that the table puts on the wrong side of an edge lies within 0.0403 px of the edge: half a step of distance,
+// 1 / (128 sqrt 2) px, and half a step of angle, pi / 64, seen from at most half a diagonal away. On average a sixth of
+// a sample is on the wrong side.
 TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
   Random random(33);
-  const double bound = 1 / (64 * std::sqrt(2.0)) + std::acos(-1.0) / 64 / std::sqrt(2.0) + 1e-6;
+  const double bound = 1 / (128 * std::sqrt(2.0)) + std::acos(-1.0) / 64 / std::sqrt(2.0) + 1e-6;
   constexpr int kEdges = 50'000;
   double wrong = 0;
   for (int i = 0; i < kEdges; ++i) {
@@ -133,7 +123,7 @@ TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
       ASSERT_LE(std::abs(distance), bound) << e.a << ", " << e.b << ", " << e.c;
     }
   }
-  EXPECT_LT(wrong / kEdges, 0.5) << "bits of 32";
+  EXPECT_LT(wrong / kEdges, 0.2) << "bits of 32";
 }
 
 }  // namespace beampipe::mask_table_test

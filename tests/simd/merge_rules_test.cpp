@@ -243,9 +243,9 @@ TEST(MergeRules, LinesPartPositionsAsTheTableDoes) {
   EXPECT_GT(cut, 5'000);
 }
 
-// All around, in steps of 1/4 degree: positions that are farther from the line than the table's steps can move it are on
-// the right side. Half a step of the angle, 2.8 degrees, moves a line by at most 0.035, half a step of its distance by
-// 0.011.
+// All around, in steps of 1/4 degree: positions that are farther from the line than the table's steps can move it are
+// on the right side. Half a step of the angle, 2.8 degrees, moves a line by at most 0.035, half a step of its distance
+// by 0.011.
 TEST(MergeRules, HalfPlanesFaceTheirDirection) {
   for (int step = 0; step < 4 * 360; ++step) {
     const double angle = step * std::numbers::pi / 720, a = std::cos(angle), b = std::sin(angle);
@@ -417,7 +417,7 @@ TEST(MergeRules, OverlapIsIndependentOrBeside) {
   }
 }
 
-// A speck of 1/4 in front of 7/8, or within its slab. Together they exceed the pixel, so the one behind keeps 3/4 of
+// A speck of 1/4 in front of 7/8. Together they exceed the pixel, so the one behind keeps 3/4 of
 // the pixel if sums are bounded. If they are not, both are scaled to 1 in the end: to 2/9 and 7/9. A speck behind finds
 // 1/8.
 TEST(MergeRules, UnboundedSpecksLieBesideAllThatIsThere) {
@@ -509,6 +509,14 @@ TEST(MergeRules, WithinTheSlabCoverageIsTheUnion) {
   expect_shows(merged(in, old), 0.75, 0.375, 0.375, 1e-6);
   expect_shows(merged(in, old, {.fuzzy = MergeRules::Fuzzy::delta}), 0.5, 0.25, 0.25, 1e-6);
   expect_shows(merged(in, old, {.fuzzy = MergeRules::Fuzzy::mix}), 0.75, 0.375, 0.375, 1e-6);
+}
+
+// A speck of 1/4 in the middle of a slab of 7/8. Beside each other they fill the pixel; the speck has as much of it as
+// its factor, 1/8, has of 1/8 + 7/16. With the factors of 2.2.1 it lies in front.
+TEST(MergeRules, ASpeckWithinTheSlabLiesBesideWhatIsThere) {
+  const Aggregate old = slab(-0.5f, 0.2f, -0.6f, -0.4f, 0.875f), speck = flat_surface(0.25f, kAllBits, -0.5f, 1, 0);
+  expect_shows(merged_tiny(speck, old), 1, 2.0 / 9, 7.0 / 9, 1e-6);
+  expect_shows(merged_tiny(speck, old, {.fuzzy = MergeRules::Fuzzy::delta}), 1, 0.25, 0.75, 1e-6);
 }
 
 // A slab of thickness 0.4 around -0.5 whose surfaces lie between -0.55 and -0.45. A fragment at -0.4 is behind the

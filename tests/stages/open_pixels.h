@@ -38,8 +38,9 @@ struct OpenTile {
   std::vector<float> counts, merges;       // per pixel: fragments that no closed pixel hid, owners that became one
   std::vector<Fragment> fragments;         // all that were composed
   StageCounters composing{}, finishing{};  // counted by compose_pooled and finish_pooled
-  std::vector<float> chunks_in_memory, record_bytes;
+  std::vector<float> chunks_in_memory, record_bytes, refusals, lost_specks;
   PooledResult result;
+  ChunkRequests spills_of_composing;
   const PixelObservers* observers = nullptr;  // null: nobody looks
 
   OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
@@ -53,19 +54,24 @@ struct OpenTile {
         merges(in.pixels()),
         chunks_in_memory(in.pixels()),
         record_bytes(in.pixels()),
-        result({chunks_in_memory, record_bytes}) {}
+        refusals(in.pixels()),
+        lost_specks(in.pixels()),
+        result({chunks_in_memory, record_bytes, &refusals, &lost_specks}) {}
 
   // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
     fragments = fragments_in_order<Words>(triangles, list, tile);
     const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, {}, observers};
     compose_pooled(bin, {fragments, 0}, composing, PooledTile<Words>{pixels, closed, {counts, merges}, result});
+    spills_of_composing = result.spills;
     return finish_pooled(bin, finishing, pixels, result);
   }
+  // Without watermarks that move on, nothing is final before the end.
   std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {
     StageCounters ignored;
-    const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
-    return compose(ordered.triangles, with_watermarks ? &ordered.watermarks : nullptr);
+    OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
+    if (!with_watermarks) ordered.watermarks.assign(ordered.triangles.size(), kInFront);
+    return compose(ordered.triangles, &ordered.watermarks);
   }
 };
 

@@ -42,11 +42,11 @@ TEST_P(ScenesTest, KeepsToItsTriangles) {
 
 TEST_P(ScenesTest, HasADefaultSize) {
   const std::map<std::string_view, double> defaults = {
-      {"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3}, {"pickets", 5e3},  {"terrain", 150e3},
-      {"sphere", 100e3},   {"fence", 60e3},      {"soup", 20e3}, {"foliage", 80e3}, {"bars", 4e3},
-      {"density", 5760},   {"stack", 64},        {"room", 40e3}, {"rigging", 40e3}, {"leaves", 12e3},
-      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74},  {"shrubs", 60e3},  {"library", 60e3},
-      {"scaffold", 50e3},  {"cables", 40e3},     {"crowd", 80e3}};
+      {"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3},  {"pickets", 5e3},  {"terrain", 150e3},
+      {"sphere", 100e3},   {"fence", 60e3},      {"soup", 20e3},  {"foliage", 80e3}, {"bars", 4e3},
+      {"density", 5760},   {"stack", 64},        {"room", 40e3},  {"rigging", 40e3}, {"leaves", 12e3},
+      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74},   {"shrubs", 60e3},  {"library", 60e3},
+      {"scaffold", 50e3},  {"cables", 40e3},     {"crowd", 80e3}, {"stairs", 20e3},  {"study", 20e3}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }
@@ -260,18 +260,20 @@ TEST(Scenes, TexelsAreTheSameEverywhere) {
         for (int channel = 0; channel < 4; ++channel) hash = (hash ^ texel[channel]) * 0x100000001b3u;
   }
   const std::map<std::string_view, std::uint64_t> expected = {
-      {"room", 0x27b7ad02ec6643b2u},  {"rigging", 0xd9eb475cadf09b3u}, {"leaves", 0x4f93e31ee083af0cu},
-      {"bumps", 0xbc474f6dcec898dfu}, {"sheets", 0xa3d6789ef7e40643u}, {"tiles", 0x8e07f6933680af65u}};
+      {"room", 0x27b7ad02ec6643b2u},   {"rigging", 0xd9eb475cadf09b3u}, {"leaves", 0x4f93e31ee083af0cu},
+      {"bumps", 0xbc474f6dcec898dfu},  {"sheets", 0xa3d6789ef7e40643u}, {"tiles", 0x8e07f6933680af65u},
+      {"stairs", 0x104397802d0b1749u}, {"study", 0xd67889639ba5eb07u}};
   EXPECT_EQ(hashes, expected);
 }
 
 TEST(Scenes, AreTheKnownOnes) {
   std::set<std::string_view> names;
   for (const SceneKind& kind : scene_kinds()) names.insert(kind.name);
-  EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat",     "pickets", "terrain", "sphere",
-                                               "fence",    "soup",      "foliage",  "bars",    "density", "stack",
-                                               "room",     "rigging",   "leaves",   "bumps",   "sheets",  "tiles",
-                                               "shrubs",   "library",   "scaffold", "cables",  "crowd"}));
+  EXPECT_EQ(names,
+            (std::set<std::string_view>{"hairball", "classroom", "boat",   "pickets", "terrain", "sphere",  "fence",
+                                        "soup",     "foliage",   "bars",   "density", "stack",   "room",    "rigging",
+                                        "leaves",   "bumps",     "sheets", "tiles",   "shrubs",  "library", "scaffold",
+                                        "cables",   "crowd",     "stairs", "study"}));
 }
 
 TEST(Scenes, DensityFillsThePictureWithItsPixelsPerTriangle) {
@@ -316,7 +318,8 @@ TEST(Scenes, RefusesWhatItCannotMake) {
   EXPECT_EQ(
       refusal("ball", {}),
       "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, bars, "
-      "density, stack, room, rigging, leaves, bumps, sheets, tiles, shrubs, library, scaffold, cables, crowd, found "
+      "density, stack, room, rigging, leaves, bumps, sheets, tiles, shrubs, library, scaffold, cables, crowd, stairs, "
+      "study, found "
       "\"ball\"");
   EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
   EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");
@@ -358,7 +361,9 @@ TEST(Scenes, DoNotDrawTheBackFacesOfClosedMeshes) {
       {"library", {"wood", "books", "lamps"}},
       {"scaffold", {"bars", "planks", "net"}},
       {"cables", {"houses", "poles", "cables"}},
-      {"crowd", {"houses", "people"}}};
+      {"crowd", {"houses", "people"}},
+      {"stairs", {"steps", "frames", "rail"}},
+      {"study", {"wood", "books"}}};
   for (const SceneKind& kind : scene_kinds()) {
     for (const std::uint32_t triangles : {0u, 1500u}) {
       const Trace trace = make_scene(kind.name, {.triangles = triangles});

@@ -64,9 +64,10 @@ struct FrameReport {
   // What the pixels of a bin take on chip; 0 if they are in memory.
   double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }
 
-  // What triangles take in memory beside the framebuffer: the A-buffer, and the layer of translucent ones.
+  // What triangles take in memory beside the framebuffer: the A-buffer, the layer of translucent ones, and records of
+  // beam that found no room on chip.
   double bytes_beside_framebuffer() const {
-    return static_cast<double>(a_buffer_peak_bytes) + peak_bytes_of(kTranslucentLayer);
+    return static_cast<double>(a_buffer_peak_bytes) + peak_bytes_of(kTranslucentLayer) + peak_bytes_of(kSpilledRecords);
   }
 
   BinSize bin_size() const { return {open_pixel_bytes(), static_cast<double>(bin_pixels)}; }

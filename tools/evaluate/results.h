@@ -40,7 +40,8 @@ struct TechniqueReport {
   double order_difference = 0;      // RMS difference between the two orders whose pictures differ most
   std::string inspections;          // file with the histories of some pixels; empty if there are none
 
-  // Bytes of the framebuffer, and of A-buffer and translucent layer in the frame where these are largest.
+  // Bytes of the framebuffer, and of A-buffer, translucent layer and spilled records in the frame where these are
+  // largest.
   double peak_bytes_per_pixel() const;
 
   // All buffers that a bin has on chip at their peaks, over the pixels of a bin; in the frame where that is largest.

@@ -56,7 +56,7 @@ std::vector<Figure> report_figures(const ReportFile& report) {
         {"cost",
          "Memory and accuracy",
          "Up and to the left is better. Above the line a technique needs less memory than MSAA with the same "
-         "error. The memory includes A-buffer and translucent layer at their peaks. Triangles mark bounds.",
+         "error. The memory includes A-buffer, translucent layer and spilled records at their peaks. Triangles mark bounds.",
          {{"on chip and off chip", storage_plot({report})}, {"off chip", frontier_plot({report})}}});
     Figure speed{"cost", "Time and error", "Down and to the left is better.", {}};
     for (const std::string& implementation : implementations)

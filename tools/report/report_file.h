@@ -38,7 +38,7 @@ struct ModelledMs {
 // Cost and error of one technique, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
-  double bytes_per_pixel = 0;          // framebuffer, and at their peaks A-buffer and translucent layer
+  double bytes_per_pixel = 0;          // framebuffer, and at their peaks A-buffer, translucent layer, spilled records
   double on_chip_bytes_per_pixel = 0;  // all buffers that a bin has on chip, at their peaks
   double all_bytes_per_pixel = 0;      // both
   std::uint64_t bin_pixels = 0;        // of the largest bin

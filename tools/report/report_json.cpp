@@ -110,7 +110,8 @@ Form<TechniqueReport> result_form() {
       .written("framebuffer_bytes_per_pixel", &Result::framebuffer_bytes_per_pixel, form::count(),
                "All surfaces in memory.")
       .written("peak_bytes_per_pixel", &Result::peak_bytes_per_pixel, form::amount(),
-               "The framebuffer, and A-buffer and translucent layer in the frame where these are largest.")
+               "The framebuffer, and A-buffer, translucent layer and spilled records in the frame where these are "
+               "largest.")
       .written("on_chip_bytes_per_pixel", &Result::on_chip_bytes_per_pixel, form::amount(),
                "All buffers that a bin has on chip, at their peaks, over the pixels of the largest bin.")
       .written("off_chip_bytes_per_pixel", &Result::peak_bytes_per_pixel, form::amount(), "As peak_bytes_per_pixel.")

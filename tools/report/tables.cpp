@@ -81,7 +81,8 @@ const std::vector<Source> kTechniqueColumns = {
       "Size of the technique's framebuffer per pixel, all surfaces together.", kMemory},
      "/framebuffer_bytes_per_pixel"},
     {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
-      "Size of framebuffer, A-buffer and translucent layer per pixel, in the frame where these are largest.", kMemory},
+      "Size of framebuffer, A-buffer, translucent layer and spilled records per pixel, in the frame where these are "
+      "largest.", kMemory},
      "/peak_bytes_per_pixel"},
     {{"msaa_bytes_per_pixel", "as MSAA", "bytes per pixel",
       "Size per pixel of MSAA with the same error: EMR times the bytes of msaa:1.", kMemory},

@@ -67,7 +67,7 @@ std::vector<Column> cell_columns() {
   columns.push_back({{"on_chip_bytes_per_pixel", "bytes", "all that a bin has on chip, at its peak, over its pixels"},
                      [](const Cell& c) { return Json(c.report.on_chip_bytes_per_pixel()); }});
   columns.push_back(
-      {{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and A-buffer and translucent layer at their peaks"},
+      {{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and A-buffer, translucent layer and spilled records at their peaks"},
        [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
   columns.push_back({{"operations", "", "operations of all stages"},
                      [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.ops.total(); }); }});

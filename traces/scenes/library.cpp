@@ -9,15 +9,17 @@ namespace {
 using glm::dvec3;
 
 // Metres. Shelves stand along both side walls and the back wall, which is z = 0.
-constexpr double kWidth = 6, kDepth = 9, kHeight = 3.2, kShelfDepth = 0.3, kShelfHeight = 2.8, kSideLength = 5.4;
+constexpr double kLibraryWidth = 6, kLibraryDepth = 9, kLibraryHeight = 3.2, kShelfDepth = 0.3, kShelfHeight = 2.8,
+                 kSideLength = 5.4;
 constexpr glm::vec3 kShelfWood(0.38f, 0.22f, 0.11f);
 
 // Puts what stands at z = 0, with its back towards -z, along one of the walls.
 std::function<dvec3(const dvec3&)> along_wall(int wall) {
-  if (wall == 0) return [](const dvec3& p) { return dvec3(p.x - kWidth / 2, p.y, p.z); };
+  if (wall == 0) return [](const dvec3& p) { return dvec3(p.x - kLibraryWidth / 2, p.y, p.z); };
   // Shelves of the side walls begin where those of the back wall end.
-  if (wall == 1) return [](const dvec3& p) { return dvec3(p.z - kWidth / 2, p.y, kShelfDepth + kSideLength - p.x); };
-  return [](const dvec3& p) { return dvec3(kWidth / 2 - p.z, p.y, kShelfDepth + p.x); };
+  if (wall == 1)
+    return [](const dvec3& p) { return dvec3(p.z - kLibraryWidth / 2, p.y, kShelfDepth + kSideLength - p.x); };
+  return [](const dvec3& p) { return dvec3(kLibraryWidth / 2 - p.z, p.y, kShelfDepth + p.x); };
 }
 
 // Books stand side by side; a few lean, and now and then there is a gap. `width`: of a typical book.
@@ -85,13 +87,14 @@ void add_table(MeshBuilder& wood, MeshBuilder& lamps, double z, int rings) {
 std::vector<Mesh> library_meshes(double budget, Random& random) {
   MeshBuilder ceiling("ceiling"), room("room"), wood("wood"), books("books"), lamps("lamps");
   room.color = {0.42f, 0.36f, 0.30f};
-  room.quad({-3, 0, kDepth}, {3, 0, kDepth}, {3, 0, 0}, {-3, 0, 0});
+  room.quad({-3, 0, kLibraryDepth}, {3, 0, kLibraryDepth}, {3, 0, 0}, {-3, 0, 0});
   room.color = {0.66f, 0.62f, 0.54f};
-  room.quad({-3, 0, 0}, {3, 0, 0}, {3, kHeight, 0}, {-3, kHeight, 0});
-  room.quad({-3, 0, kDepth}, {-3, 0, 0}, {-3, kHeight, 0}, {-3, kHeight, kDepth});
-  room.quad({3, 0, 0}, {3, 0, kDepth}, {3, kHeight, kDepth}, {3, kHeight, 0});
+  room.quad({-3, 0, 0}, {3, 0, 0}, {3, kLibraryHeight, 0}, {-3, kLibraryHeight, 0});
+  room.quad({-3, 0, kLibraryDepth}, {-3, 0, 0}, {-3, kLibraryHeight, 0}, {-3, kLibraryHeight, kLibraryDepth});
+  room.quad({3, 0, 0}, {3, 0, kLibraryDepth}, {3, kLibraryHeight, kLibraryDepth}, {3, kLibraryHeight, 0});
   ceiling.color = {0.40f, 0.39f, 0.36f};
-  ceiling.quad({-3, kHeight, 0}, {3, kHeight, 0}, {3, kHeight, kDepth}, {-3, kHeight, kDepth});
+  ceiling.quad({-3, kLibraryHeight, 0}, {3, kLibraryHeight, 0}, {3, kLibraryHeight, kLibraryDepth},
+               {-3, kLibraryHeight, kLibraryDepth});
   const int rings = divisions(0.02 * budget, 8, 4);
   const bool is_small = budget < 8000;
   add_table(wood, lamps, 4.4, rings);
@@ -99,10 +102,10 @@ std::vector<Mesh> library_meshes(double budget, Random& random) {
   if (!is_small) add_ladder(wood, random);
   Shelves shelves{is_small ? 2 : 7, is_small ? 2.0 : 1.0, 0};
   // A book has 12 triangles.
-  const double length = (kWidth + 2 * kSideLength) * shelves.boards;
+  const double length = (kLibraryWidth + 2 * kSideLength) * shelves.boards;
   const double left = std::max(0.1 * budget, budget - (is_small ? 600.0 : 3000.0));
   shelves.width = std::min(0.6, 12 * length / left);
-  add_shelves(wood, books, 0, kWidth, shelves, random);
+  add_shelves(wood, books, 0, kLibraryWidth, shelves, random);
   for (const int wall : {1, 2}) add_shelves(wood, books, wall, kSideLength, shelves, random);
   return {ceiling.take(), room.take(), wood.take(), books.take(), lamps.take()};
 }

@@ -9,7 +9,7 @@ namespace {
 using glm::dvec3;
 
 // Metres. The wall is z = 0; the scaffold stands in front of it, in two rows of posts.
-constexpr double kWidth = 26, kStorey = 2.0, kNear = 1.5, kFar = 0.4;
+constexpr double kWallWidth = 26, kStorey = 2.0, kNearRow = 1.5, kFarRow = 0.4;
 
 // A bar as an upright prism, in short pieces if there are triangles for them.
 void add_bar(MeshBuilder& bars, const dvec3& a, const dvec3& b, double radius, int sides, int pieces) {
@@ -21,7 +21,7 @@ void add_wall(MeshBuilder& wall, double budget, int columns, int rows, Random& r
   wall.quad({-20, 0, 0}, {20, 0, 0}, {20, 20, 0}, {-20, 20, 0});
   for (int i = 0; i < columns; ++i)
     for (int k = 0; k < rows; ++k) {
-      const double x = -kWidth / 2 + kWidth * (i + 0.5) / columns, y = 0.6 + kStorey * k;
+      const double x = -kWallWidth / 2 + kWallWidth * (i + 0.5) / columns, y = 0.6 + kStorey * k;
       wall.color = random.vary({0.16f, 0.20f, 0.26f}, 0.3);
       wall.quad({x - 0.4, y, 0.02}, {x + 0.4, y, 0.02}, {x + 0.4, y + 1.2, 0.02}, {x - 0.4, y + 1.2, 0.02});
       if (budget < 6000) continue;
@@ -37,8 +37,8 @@ void add_net(MeshBuilder& net, double budget) {
   net.color = {0.12f, 0.38f, 0.20f};
   for (int i = 0; i <= count; ++i) {
     const double x = kLeft + (kRight - kLeft) * i / count, y = kLow + (kHigh - kLow) * i / count;
-    net.tube(line({x, kLow, kNear + 0.1}, {x, kHigh, kNear + 0.1}), 0.006, 3);
-    net.tube(line({kLeft, y, kNear + 0.11}, {kRight, y, kNear + 0.11}), 0.006, 3);
+    net.tube(line({x, kLow, kNearRow + 0.1}, {x, kHigh, kNearRow + 0.1}), 0.006, 3);
+    net.tube(line({kLeft, y, kNearRow + 0.11}, {kRight, y, kNearRow + 0.11}), 0.006, 3);
   }
 }
 
@@ -53,27 +53,27 @@ std::vector<Mesh> scaffold_meshes(double budget, Random& random) {
   add_net(net, 0.15 * budget);
   // Bars of a bay and storey: two posts, four ledgers, one that joins the rows, and a brace.
   const int pieces = std::max(1, static_cast<int>(0.8 * budget / (bays * storeys * 8.0) / (2 * sides)));
-  const double bay = kWidth / bays;
+  const double bay = kWallWidth / bays;
   for (int i = 0; i <= bays; ++i) {
-    const double x = -kWidth / 2 + bay * i;
+    const double x = -kWallWidth / 2 + bay * i;
     for (int k = 0; k < storeys; ++k) {
       const double y = kStorey * k, top = y + kStorey;
       bars.color = random.vary({0.62f, 0.64f, 0.67f}, 0.15);
-      for (const double z : {kNear, kFar}) {
+      for (const double z : {kNearRow, kFarRow}) {
         add_bar(bars, {x, y, z}, {x, top, z}, 0.035, sides, pieces);
         if (i == bays) continue;
         for (const double rail : {top, top + 1.0})
           add_bar(bars, {x, rail, z}, {x + bay, rail, z}, 0.025, sides, pieces);
       }
-      add_bar(bars, {x, top, kFar}, {x, top, kNear}, 0.025, sides, 1);
+      add_bar(bars, {x, top, kFarRow}, {x, top, kNearRow}, 0.025, sides, 1);
       if (i == bays) continue;
       if ((i + k) % 3 == 0) {
         bars.color = random.vary({0.75f, 0.45f, 0.10f}, 0.1);
-        add_bar(bars, {x, y, kNear + 0.06}, {x + bay, top, kNear + 0.06}, 0.022, sides, pieces);
+        add_bar(bars, {x, y, kNearRow + 0.06}, {x + bay, top, kNearRow + 0.06}, 0.022, sides, pieces);
       }
       planks.color = random.vary({0.52f, 0.36f, 0.18f}, 0.25);
       for (int board = 0; board < 3; ++board) {
-        const double z = kFar + 0.1 + 0.32 * board, shift = random.uniform(-0.2, 0.2);
+        const double z = kFarRow + 0.1 + 0.32 * board, shift = random.uniform(-0.2, 0.2);
         planks.box({x + shift, top + 0.03, z}, {x + bay + shift, top + 0.07, z + 0.28});
       }
     }

@@ -64,5 +64,7 @@ Trace make_library(const SceneOptions& options);
 Trace make_scaffold(const SceneOptions& options);
 Trace make_cables(const SceneOptions& options);
 Trace make_crowd(const SceneOptions& options);
+Trace make_stairs(const SceneOptions& options);
+Trace make_study(const SceneOptions& options);
 
 }  // namespace beampipe

@@ -8,7 +8,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr glm::vec3 kGreens[] = {{0.16f, 0.40f, 0.10f}, {0.30f, 0.46f, 0.08f}, {0.45f, 0.42f, 0.12f}};
+constexpr glm::vec3 kShrubGreens[] = {{0.16f, 0.40f, 0.10f}, {0.30f, 0.46f, 0.08f}, {0.45f, 0.42f, 0.12f}};
 
 // A pointed leaf of four triangles: both halves rise from the middle, and its tip hangs down.
 void add_leaf(MeshBuilder& leaves, const dvec3& stalk, double size, Random& random) {
@@ -56,7 +56,7 @@ std::vector<Mesh> shrub_meshes(double budget, Random& random) {
     const double far = static_cast<double>(i) / count, z = 0.5 - 14 * far;
     const dvec3 foot((2.4 + 5.5 * far) * random.uniform(-1, 1), 0, z);
     const double height = random.uniform(0.8, 1.9);
-    const glm::vec3 green = random.vary(kGreens[i % 3], 0.25);
+    const glm::vec3 green = random.vary(kShrubGreens[i % 3], 0.25);
     stems.color = random.vary({0.30f, 0.20f, 0.12f}, 0.2);
     for (int k = 0; k < per_shrub; ++k) {
       const Path path = grow_stem(foot, height, random);

@@ -7,18 +7,18 @@
 namespace beampipe {
 namespace {
 
-constexpr double kDistance = 10, kFovyDeg = 40, kDepth = 4;
+constexpr double kStackDistance = 10, kStackFovyDeg = 40, kStackDepth = 4;
 
 // Triangles at random depths, each of which covers the whole picture, so that every pixel has as many fragments as
 // there are triangles.
 std::vector<Mesh> stack_meshes(double budget, const SceneOptions& options, Random& random) {
-  const double half_height = std::tan(glm::radians(kFovyDeg / 2));  // at distance 1
+  const double half_height = std::tan(glm::radians(kStackFovyDeg / 2));  // at distance 1
   const double half_width = half_height * options.width / options.height;
   Mesh stack;
   stack.name = "stack";
   const int triangles = std::max(1, static_cast<int>(std::lround(budget)));
   for (int i = 0; i < triangles; ++i) {
-    const double z = random.uniform(-kDepth / 2, kDepth / 2), distance = kDistance - z;
+    const double z = random.uniform(-kStackDepth / 2, kStackDepth / 2), distance = kStackDistance - z;
     const double x = random.uniform(-0.9, 0.9) * half_width, y = random.uniform(-0.9, 0.9) * half_height;
     // The triangle's inscribed circle, which is around (x, y), contains the picture.
     const double circle = 2 * std::hypot(half_width, half_height), turn = random.uniform(0, 2 * std::numbers::pi);
@@ -37,8 +37,12 @@ std::vector<Mesh> stack_meshes(double budget, const SceneOptions& options, Rando
 }  // namespace
 
 Trace make_stack(const SceneOptions& options) {
-  const Camera camera{
-      .eye = {0, 0, kDistance}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = kFovyDeg, .near = 1, .far = 40};
+  const Camera camera{.eye = {0, 0, kStackDistance},
+                      .target = {0, 0, 0},
+                      .up = {0, 1, 0},
+                      .fovy_deg = kStackFovyDeg,
+                      .near = 1,
+                      .far = 40};
   const auto build_stack = [&](double budget, Random& random) { return stack_meshes(budget, options, random); };
   return one_frame(options, camera, build_to_budget(options, 64, build_stack));
 }

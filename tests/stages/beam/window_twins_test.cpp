@@ -157,33 +157,6 @@ TEST_P(WindowTwins, ClosedCells) {
   }
 }
 
-// One record each, which is read once; nothing is tested.
-TEST_P(WindowTwins, WindowsOfOneRecord) {
-  StageCounters ignored, counters;
-  std::vector<Pair> pairs, window, whole;
-  conservative_raster(triangles_, list_, tile_, ignored, pairs);
-  const ABuffer buffer = a_buffer(sort_records(pairs, tile_), tile_.pixels(), 16, 12, ignored);
-  Windows windows(pairs, buffer, 12, 1);
-  std::vector<std::uint32_t> next(tile_.pixels());
-  std::uint64_t taken = 0, made = 0;
-  while (windows.next([](std::uint32_t) { return true; }, counters, window, whole)) {
-    ++made;
-    for (const std::vector<Pair>* part : {&window, &whole})
-      for (const Pair& pair : *part) {
-        const std::size_t pixel = tile_.index(pair.x, pair.y);
-        ASSERT_EQ(pair.triangle, pairs[buffer.records[buffer.first[pixel] + next[pixel]]].triangle);
-        ++next[pixel], ++taken;
-      }
-  }
-  std::uint32_t deepest = 0;
-  for (std::uint32_t pixel = 0; pixel < tile_.pixels(); ++pixel)
-    deepest = std::max(deepest, buffer.record_count(pixel));
-  EXPECT_EQ(made, deepest);
-  EXPECT_EQ(taken, pairs.size());
-  EXPECT_EQ(counters.bytes_read, 16 * pairs.size());
-  EXPECT_EQ(counters.ops, OperationCounts{});
-}
-
 TEST_P(WindowTwins, Windows) {
   constexpr std::size_t kWords = 8;
   const PositionSet positions(cell_patterns(32 * kWords));

@@ -1,6 +1,8 @@
 // Cutouts of sample fragments, by hand.
 #include "stages/samples/alpha_test.h"
 
+#include <set>
+
 #include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 
@@ -74,6 +76,47 @@ TEST(AlphaTest, CoverageTakesThePartOfTheSamples) {
   EXPECT_TRUE(none.fragments.empty());
 }
 
+// The border of the texture's halves, x = 4, divides the samples of pixel 3 or 4; sample places are in 1/256 px.
+TEST(AlphaTest, SamplesAreTestedOneByOne) {
+  SurfaceTrace trace(8, 8);
+  const TextureImage image{"halves", 2, 1, {{255, 255, 255, 0}, {255, 255, 255, 255}}};
+  Material material = textured_material(trace.add_image(image), AlphaMode::mask);
+  material.base_texture->magnify = Filter::nearest;
+  trace.add_rectangle(0.5, 0, 8.5, 8, 0.5, material);  // the border lies at x = 4.5
+  const ShadedScene scene(trace.trace);
+  const SamplePattern pattern = standard_pattern(8);
+  std::uint32_t expected = 0;
+  for (int s = 0; s < 8; ++s)
+    if (pattern.x[s] >= 128) expected |= 1u << s;
+  const Tested found =
+      tested(scene, AlphaCoverage::by_sample, {{0, 0, 4, 1, 0xffu}, {0, 0, 5, 1, 0x3u}, {0, 1, 3, 1, 0xffu}},
+             std::vector<glm::vec2>(3, glm::vec2(0.5f)));
+  ASSERT_EQ(found.fragments.size(), 2u);
+  EXPECT_EQ(found.fragments[0].mask, expected);
+  EXPECT_EQ(found.fragments[1].mask, 0x3u);
+  // 18 tests. The first quad runs for each of its eight samples, and the second one too.
+  EXPECT_EQ(found.counters.lanes_used, 18u);
+  EXPECT_EQ(found.counters.lanes_issued, 64u);
+}
+
+// 160 / 255 of 8 samples is 5.02, which is 5 or 6 of them; surfaces behind each other take others.
+TEST(AlphaTest, HashesTakeThePartOfTheSamples) {
+  const ShadedScene scene(halves(AlphaMode::mask).trace);
+  std::set<std::uint32_t> masks;
+  int sum = 0;
+  for (std::int32_t y = 0; y < 8; ++y)
+    for (std::int32_t x = 4; x < 8; ++x) {
+      const Tested found = tested(scene, AlphaCoverage::hashed, {{0, 0, x, y, 0xffu}}, {glm::vec2(0.5f)});
+      ASSERT_EQ(found.fragments.size(), 1u);
+      const int taken = std::popcount(found.fragments[0].mask);
+      EXPECT_TRUE(taken == 5 || taken == 6) << taken;
+      sum += taken, masks.insert(found.fragments[0].mask);
+    }
+  EXPECT_NEAR(sum / 32.0, 160 / 255.0 * 8, 0.2);
+  EXPECT_GT(masks.size(), 4u);
+  EXPECT_TRUE(tested(scene, AlphaCoverage::hashed, {{0, 0, 1, 1, 0xffu}}, {glm::vec2(0.5f)}).fragments.empty());
+}
+
 // Several surfaces take the same samples, so that a cutout in front of itself does not show through.
 TEST(AlphaTest, CoverageIsTheSameForAllSurfaces) {
   SurfaceTrace trace = halves(AlphaMode::mask);
@@ -105,12 +148,12 @@ TEST(AlphaTest, CellsAreTestedOneByOne) {
   EXPECT_EQ(found.fragments[0].x, 8);
 }
 
-// Per fragment: four invocations of a quad that find alpha, and a comparison, or one for each sample.
+// Four invocations of each quad that find alpha, and for each fragment a comparison, or one for each sample.
 TEST(AlphaTest, CountsItsWork) {
   const ShadedScene scene(halves(AlphaMode::mask).trace);
   for (const AlphaCoverage coverage : {AlphaCoverage::test, AlphaCoverage::to_coverage}) {
     const Tested found =
-        tested(scene, coverage, {{0, 0, 6, 1, 0xffu}, {0, 0, 1, 1, 0xffu}}, {glm::vec2(0.5f), glm::vec2(0.5f)});
+        tested(scene, coverage, {{0, 0, 6, 1, 0xffu}, {0, 1, 1, 1, 0xffu}}, {glm::vec2(0.5f), glm::vec2(0.5f)});
     EXPECT_EQ(found.counters.items_in, 2u);
     EXPECT_EQ(found.counters.items_out, 1u);
     EXPECT_EQ(found.counters.bytes_read, 2 * kSampleFragmentBytes);
@@ -122,6 +165,20 @@ TEST(AlphaTest, CountsItsWork) {
     expected.add += coverage == AlphaCoverage::test ? 2 : 16;
     EXPECT_EQ(found.counters.ops, expected);
   }
+  // A hash by hand. Squared slopes: 4 products, 3 additions. Cells: 2 additions, a root, a quotient; their power of two
+  // and their share: 3 bits, 1 addition; the finer ones: 1 addition. For each of two sizes: 2 products, 4 limits, 2
+  // integers; three times 6 bits and 2 products, 2 additions; 1 bit, 1 conversion, 1 product. Their mean: 1 product, 2
+  // additions. Its distribution: 5 additions; 3 products, a limit and a quotient; a product, an addition and a
+  // quotient; 5 additions to choose. Then 5 additions for each of 8 samples.
+  OperationCounts expected = OperationCounts{.mul_add = 31, .add = 36, .fetch = 1, .special = 2} * 8;
+  expected += OperationCounts{.mul_add = 27, .add = 33 + 8 * 5, .bit = 41, .special = 4, .convert = 6} * 2;
+  EXPECT_EQ(tested(scene, AlphaCoverage::hashed, {{0, 0, 6, 1, 0xffu}, {0, 1, 1, 1, 0xffu}},
+                   {glm::vec2(0.5f), glm::vec2(0.5f)})
+                .counters.ops,
+            expected);
+  const Tested in_one_quad = tested(scene, AlphaCoverage::test, {{0, 0, 6, 1, 0xffu}, {0, 0, 7, 1, 0xffu}},
+                                    {glm::vec2(0.5f), glm::vec2(0.5f)});
+  EXPECT_EQ(in_one_quad.counters.lanes_issued, 4u);
 }
 
 }  // namespace beampipe::alpha_test_test
