@@ -38,6 +38,7 @@ struct CapturedPictures {
   std::optional<std::uint32_t> color{};  // index into Trace::images, of the frame's size
   std::vector<float> depth;              // window depth of each pixel, row by row; empty or of the frame's size
   float clear_depth = 1;                 // where nothing was drawn
+  std::uint32_t samples = 1;             // of each pixel, when the program drew
   bool operator==(const CapturedPictures&) const = default;
 };
 

@@ -45,19 +45,37 @@ PixelMatch match_at(const CapturedPictures& captured, const CentreDepths& found,
           difference};
 }
 
+}  // namespace
+
 double part_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 1.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-}  // namespace
+DrawDifferences::DrawDifferences(std::size_t draws) : draws_(draws + 1) {
+  for (std::uint32_t i = 0; i < draws; ++i) draws_[i].draw = i;
+}
 
-void ignore_blending(Trace& trace) {
-  for (Frame& frame : trace.frames) {
-    for (Draw& draw : frame.draws) {
-      draw.state.color_mask = kAllChannels;
-      draw.state.blend.reset();
-    }
+void DrawDifferences::add(std::uint32_t draw, bool is_differing, double difference) {
+  DrawDifference& found = draw == kNoDraw ? draws_.back() : draws_.at(draw);
+  ++found.pixels;
+  found.differing += is_differing;
+  found.largest = std::max(found.largest, difference);
+}
+
+std::vector<DrawDifference> DrawDifferences::sorted() const {
+  std::vector<DrawDifference> draws = draws_;
+  std::erase_if(draws, [](const DrawDifference& draw) { return draw.differing == 0; });
+  std::stable_sort(draws.begin(), draws.end(),
+                   [](const DrawDifference& a, const DrawDifference& b) { return a.differing > b.differing; });
+  return draws;
+}
+
+Frame without_blending(Frame frame) {
+  for (Draw& draw : frame.draws) {
+    draw.state.color_mask = kAllChannels;
+    draw.state.blend.reset();
   }
+  return frame;
 }
 
 CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
@@ -111,8 +129,7 @@ CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
   if (captured.depth.empty() || captured.depth.size() != found.draw.size())
     throw std::invalid_argument("the frame has no captured depth");
   CapturedCheck check;
-  std::vector<DrawDifference> draws(frame.draws.size() + 1);  // the last one: pixels without a draw
-  for (std::uint32_t i = 0; i < frame.draws.size(); ++i) draws[i].draw = i;
+  DrawDifferences draws(frame.draws.size());
   for (std::size_t pixel = 0; pixel < found.draw.size(); ++pixel) {
     const auto [match, difference] = match_at(captured, found, pixel);
     if (match == Match::nothing) continue;
@@ -121,15 +138,9 @@ CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
     check.equal += match == Match::equal;
     check.close += match == Match::equal || match == Match::close;
     check.largest = std::max(check.largest, difference);
-    DrawDifference& draw = draws[here ? found.draw[pixel] : frame.draws.size()];
-    ++draw.pixels;
-    draw.differing += match != Match::equal && match != Match::close;
-    draw.largest = std::max(draw.largest, difference);
+    draws.add(found.draw[pixel], match != Match::equal && match != Match::close, difference);
   }
-  std::erase_if(draws, [](const DrawDifference& draw) { return draw.differing == 0; });
-  std::stable_sort(draws.begin(), draws.end(),
-                   [](const DrawDifference& a, const DrawDifference& b) { return a.differing > b.differing; });
-  check.draws = std::move(draws);
+  check.draws = draws.sorted();
   return check;
 }
 

@@ -21,21 +21,34 @@ struct CentreDepths {
   std::vector<std::uint32_t> draw;  // index into Frame::draws, or kNoDraw
 };
 
-// Makes every draw write its colours as they are, so that none is left out for what it does with colours, such as draws
-// that write only depth. Depths stay.
-void ignore_blending(Trace& trace);
+// The frame with draws that all write their colours as they are, so that none is left out for what it does with
+// colours, such as draws that write only depth. Depths stay.
+Frame without_blending(Frame frame);
 
 // Draws what writes depth after the last depth clear, with one sample at each pixel's centre. Cutouts are tested there.
 // `textures`: of the trace; may be null if the frame's draws have none.
 CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);
 
-// How the depths of one draw's pixels differ. kNoDraw: pixels where only the program drew something.
+// How one draw's pixels differ. kNoDraw: pixels that no draw has here.
 struct DrawDifference {
   std::uint32_t draw = kNoDraw;
-  std::uint64_t pixels = 0;     // that it covers here
-  std::uint64_t differing = 0;  // of these: farther than kClose from the program's depth
+  std::uint64_t pixels = 0;     // that it has here
+  std::uint64_t differing = 0;  // of these: not close to the program's
   double largest = 0;           // difference
 };
+
+// Gathers them pixel by pixel.
+class DrawDifferences {
+ public:
+  explicit DrawDifferences(std::size_t draws);
+  void add(std::uint32_t draw, bool is_differing, double difference);
+  std::vector<DrawDifference> sorted() const;  // those that differ, the one with most differing pixels first
+
+ private:
+  std::vector<DrawDifference> draws_;  // the last one: pixels without a draw
+};
+
+double part_of(std::uint64_t part, std::uint64_t whole);  // part / whole; 1 if both are 0
 
 struct CapturedCheck {
   static constexpr double kClose = 1e-4, kEqual = 1e-6;  // window depth

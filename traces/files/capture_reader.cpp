@@ -6,6 +6,7 @@ namespace beampipe {
 namespace {
 
 constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kMostSamples = 64;  // that Vulkan knows
 
 std::string size_text(std::uint32_t width, std::uint32_t height) {
   return std::to_string(width) + " x " + std::to_string(height);
@@ -54,7 +55,10 @@ Form<Frame> captured_form(const std::vector<TextureImage>& images, const NameInd
             numbers_schema(form::number().schema), read_depth})
       .optional(
           "clear_depth", [](auto& frame) -> auto& { return frame.capture.pictures.clear_depth; }, form::fraction(),
-          "The window depth where nothing was drawn.");
+          "The window depth where nothing was drawn.")
+      .optional(
+          "samples", [](auto& frame) -> auto& { return frame.capture.pictures.samples; },
+          form::integer(1, kMostSamples), "How many samples of each pixel the program drew.");
 }
 
 }  // namespace

@@ -85,8 +85,7 @@ TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
   draws[1].material = 0;
   EXPECT_EQ(centre_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
-  ignore_blending(trace);
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const CentreDepths found = centre_depths(trace, without_blending(trace.frames[0]), nullptr);
   EXPECT_EQ(found.draw[0], 0u);
   EXPECT_NEAR(found.depth[0], 0.5, 1e-12);
   EXPECT_EQ(found.draw[kSize - 1], 1u);
