@@ -6,6 +6,7 @@
 #include <span>
 
 #include "traces/files/draw_state_names.h"
+#include "traces/files/material_names.h"
 #include "traces/files/program_names.h"
 
 namespace beampipe {
@@ -115,7 +116,7 @@ Form<ProgramImage> image_form(const ArrayReader& arrays) {
 }
 
 Form<ProgramSampler> sampler_form() {
-  const Form<Filter> filter = form::choice<Filter>(kSamplerFilterNames);
+  const Form<Filter> filter = form::choice<Filter>(kFilterNames);
   const Form<SamplerWrap> wrap = form::choice<SamplerWrap>(kSamplerWrapNames);
   const Form<float> lod = form::real(-kMostLod, kMostLod), number = form::real(-kMostReal, kMostReal);
   const Form<std::array<SamplerWrap, 3>> wraps = {form::array_schema(wrap.schema, 3),

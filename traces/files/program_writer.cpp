@@ -1,6 +1,7 @@
 #include "traces/files/program_writer.h"
 
 #include "traces/files/draw_state_names.h"
+#include "traces/files/material_names.h"
 #include "traces/files/program_names.h"
 
 namespace beampipe {
@@ -66,9 +67,9 @@ void write_image(TraceText& text, const ProgramImage& image) {
 void write_sampler(TraceText& text, const ProgramSampler& sampler) {
   const ProgramSampler defaults;
   text.open_object();
-  text.put_choice("mag", sampler.mag, defaults.mag, kSamplerFilterNames);
-  text.put_choice("min", sampler.min, defaults.min, kSamplerFilterNames);
-  text.put_choice("mip", sampler.mip, defaults.mip, kSamplerFilterNames);
+  text.put_choice("mag", sampler.mag, defaults.mag, kFilterNames);
+  text.put_choice("min", sampler.min, defaults.min, kFilterNames);
+  text.put_choice("mip", sampler.mip, defaults.mip, kFilterNames);
   if (sampler.wrap != defaults.wrap) {
     text.put_key("wrap");
     text.put("[");

@@ -3,6 +3,7 @@
 #include "traces/files/base64.h"
 #include "traces/files/image_file.h"
 #include "traces/files/input_file.h"
+#include "traces/files/material_names.h"
 #include "traces/files/side_file.h"
 
 namespace beampipe {
@@ -57,12 +58,9 @@ ImageForms image_forms(const fs::path& trace_file, const ReadOptions& options, c
                                           true, form::text().schema, read_file})};
 }
 
-constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"}, kFilters[] = {"nearest", "linear"},
-                           kMipFilters[] = {"none", "nearest", "linear"}, kAlphaModes[] = {"opaque", "mask", "blend"};
-
 Form<Texture> texture_form(const NameIndex& images) {
-  const Form<Wrap> wrap = form::choice<Wrap>(kWraps);
-  const Form<Filter> filter = form::choice<Filter>(kFilters);
+  const Form<Wrap> wrap = form::choice<Wrap>(kWrapNames);
+  const Form<Filter> filter = form::choice<Filter>(kFilterNames);
   return ObjectForm<Texture>()
       .required("image", &Texture::image, name_form(images, "the name of an image in /images"),
                 "The name of one of `images`.")
@@ -72,7 +70,7 @@ Form<Texture> texture_form(const NameIndex& images) {
       .optional("wrap_v", &Texture::wrap_v, wrap, "What is beyond the image's upper and lower edges.")
       .optional("magnify", &Texture::magnify, filter, "The filter where a texel is larger than a pixel.")
       .optional("minify", &Texture::minify, filter, "The filter in a mip level where a texel is smaller than a pixel.")
-      .optional("mip", &Texture::mip, form::choice<MipFilter>(kMipFilters),
+      .optional("mip", &Texture::mip, form::choice<MipFilter>(kMipFilterNames),
                 "none: always the image itself. nearest: the nearest mip level. linear: a mix of two levels.")
       .optional("anisotropy", &Texture::anisotropy, form::integer(1, 16),
                 "At most so many probes along the longer side of what a pixel covers of the image; more than 1 only "
@@ -96,7 +94,7 @@ Form<Material> material_form(const NameIndex& images) {
                 "Factor of the x and y of `normal_texture`.")
       .optional("emissive", &Material::emissive, form::color(), "Light that the surface emits, as linear RGB.")
       .optional("emissive_texture", &Material::emissive_texture, texture, "Multiplied by `emissive`; in sRGB.")
-      .optional("alpha_mode", &Material::alpha_mode, form::choice<AlphaMode>(kAlphaModes),
+      .optional("alpha_mode", &Material::alpha_mode, form::choice<AlphaMode>(kAlphaModeNames),
                 "opaque: opacity is ignored. mask: the surface is there where opacity is at least `alpha_cutoff`. "
                 "blend: opacity mixes the surface with what is behind it.")
       .optional("alpha_cutoff", &Material::alpha_cutoff, form::fraction(),

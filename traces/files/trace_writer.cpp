@@ -9,6 +9,7 @@
 #include "traces/files/capture_writer.h"
 #include "traces/files/draw_state_writer.h"
 #include "traces/files/image_file.h"
+#include "traces/files/material_names.h"
 #include "traces/files/program_names.h"
 #include "traces/files/program_writer.h"
 #include "traces/files/trace_text.h"
@@ -41,12 +42,6 @@ int version_of(const Trace& trace, ArrayStorage storage) {
                        !trace.programs.empty() || any(trace.meshes) || any(trace.frames);
   return needs_2 ? 2 : 1;
 }
-
-// The names of enumerators, in their order.
-constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"};
-constexpr std::string_view kFilters[] = {"nearest", "linear"};
-constexpr std::string_view kMipFilters[] = {"none", "nearest", "linear"};
-constexpr std::string_view kAlphaModes[] = {"opaque", "mask", "blend"};
 
 class TraceWriter : TraceText {
  public:
@@ -157,11 +152,11 @@ class TraceWriter : TraceText {
     put_key("image");
     put_name("an image", images[texture.image].name);
     put_member("uv_set", texture.uv_set, defaults.uv_set);
-    put_choice("wrap_u", texture.wrap_u, defaults.wrap_u, kWraps);
-    put_choice("wrap_v", texture.wrap_v, defaults.wrap_v, kWraps);
-    put_choice("magnify", texture.magnify, defaults.magnify, kFilters);
-    put_choice("minify", texture.minify, defaults.minify, kFilters);
-    put_choice("mip", texture.mip, defaults.mip, kMipFilters);
+    put_choice("wrap_u", texture.wrap_u, defaults.wrap_u, kWrapNames);
+    put_choice("wrap_v", texture.wrap_v, defaults.wrap_v, kWrapNames);
+    put_choice("magnify", texture.magnify, defaults.magnify, kFilterNames);
+    put_choice("minify", texture.minify, defaults.minify, kFilterNames);
+    put_choice("mip", texture.mip, defaults.mip, kMipFilterNames);
     put_member("anisotropy", texture.anisotropy, defaults.anisotropy);
     close_object();
   }
@@ -176,7 +171,7 @@ class TraceWriter : TraceText {
     put_member("roughness", material.roughness, defaults.roughness);
     put_member("normal_scale", material.normal_scale, defaults.normal_scale);
     put_member("emissive", material.emissive, defaults.emissive);
-    put_choice("alpha_mode", material.alpha_mode, defaults.alpha_mode, kAlphaModes);
+    put_choice("alpha_mode", material.alpha_mode, defaults.alpha_mode, kAlphaModeNames);
     put_member("alpha_cutoff", material.alpha_cutoff, defaults.alpha_cutoff);
     put_member("double_sided", material.double_sided, defaults.double_sided);
     put_member("unlit", material.unlit, defaults.unlit);
