@@ -186,7 +186,12 @@ DrawState random_state(std::mt19937& random) {
   if (chance()) state.depth.bias = {number(), chance() ? number() : 0.0f, number()};
   state.depth.cleared_before = chance();
   state.front_is_clockwise = chance();
-  if (chance()) state.blend = {BlendFactor(below(12)), BlendFactor(below(12)), BlendOperation(below(5))};
+  const auto equation = [&] {
+    return BlendEquation{BlendFactor(below(15)), BlendFactor(below(15)), BlendOperation(below(5))};
+  };
+  if (chance()) state.blend = Blend{.color = equation()};
+  if (state.blend && chance()) state.blend->alpha = equation();
+  if (state.blend && chance()) state.blend->constant = {0.5f, 0, 1, std::abs(number())};
   if (chance()) state.color_mask = below(16);
   if (chance()) state.stencil = {compare(), below(256), below(256), below(256), operation(), operation(), operation()};
   return state;
@@ -217,6 +222,7 @@ Trace random_capture(unsigned seed) {
   if (random() % 2 == 0) frame.capture.pictures.color = static_cast<std::uint32_t>(trace.images.size() - 1);
   if (random() % 2 == 0) frame.capture.pictures.depth = {0, 0.25f, 0.5f, 0.1f, 1, 1};
   if (random() % 2 == 0) frame.capture.pictures.clear_depth = 0;
+  if (random() % 2 == 0) frame.capture.pictures.samples = 4;
   return trace;
 }
 

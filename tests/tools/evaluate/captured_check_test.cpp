@@ -81,7 +81,7 @@ TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   add_quad(trace, {4, 0}, {8, 8}, 0.25f);
   std::vector<Draw>& draws = trace.frames[0].draws;
   draws[0].state.color_mask = 0;
-  draws[1].state.blend = Blend{BlendFactor::source_alpha, BlendFactor::one, BlendOperation::add};
+  draws[1].state.blend = Blend{{BlendFactor::source_alpha, BlendFactor::one}};
   trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
   draws[1].material = 0;
   EXPECT_EQ(centre_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
