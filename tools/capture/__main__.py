@@ -134,15 +134,15 @@ def make_trace(arguments, recording, extracted, folder, progress):
             raise Failure(f"the pass has no triangles ({reasons or 'all are empty'})")
         draws.append(collection.add_frame(frame, os.path.join(folder, str(number))))
         frames.append(frame)
-    size, triangles = trace_file.write_trace(arguments.output, frames, draws, collection,
-                                             source_of(arguments, recording, extracted[0][0]))
+    size = trace_file.write_trace(arguments.output, frames, draws, collection,
+                                  source_of(arguments, recording, extracted[0][0]))
     progress.clear()
     first = frames[0]
     drawn = sum(len(frame.draws) for frame in frames)
     print(f"{arguments.output}: {len(frames)} frame{'s' if len(frames) > 1 else ''}, {first.width} x {first.height} "
           f"pixels, {drawn} draws, {sum(frame.triangles for frame in frames)} triangles, "
-          f"{len(collection.meshes)} meshes, {size / max(1, triangles):.1f} bytes a triangle")
-    print(f"{len(collection.programs.entries)} fragment shaders, {len(collection.images.entries)} images")
+          f"{len(collection.meshes)} meshes, {len(collection.programs.entries)} fragment shaders, "
+          f"{len(collection.images.entries)} images, {size / 1e6:.1f} MB")
     for reason, (count, primitives) in sorted(first.left_out.items()):
         print(f"left out: {count} draws, {primitives} primitives: {reason}")
     for image in sorted(collection.unread):

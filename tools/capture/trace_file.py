@@ -71,7 +71,7 @@ def write_all(files):
 
 def write_trace(path, frames, draws_of_frames, collection, source):
     """Writes the trace of frame.Frame objects with the draws that meshes.Collection made of them. Returns the bytes of
-    meshes in the buffer and the number of stored triangles."""
+    all files."""
     stem = os.path.splitext(os.path.basename(path))[0]
     folder = os.path.dirname(path) or "."
     arrays, depths = Buffer("arrays"), Buffer("depths")
@@ -82,12 +82,11 @@ def write_trace(path, frames, draws_of_frames, collection, source):
         images[name] = {"file": file}
         files.append((os.path.join(folder, file), png.encode(pixels)))
 
-    triangles, without_area = 0, {}
+    without_area = {}
     for mesh in collection.meshes:
         entry = mesh_entry(mesh, arrays)
         stored = entry["indices"]["count"] // 3 if entry else 0
         without_area[mesh.name] = len(mesh.triangles) - stored
-        triangles += stored
         if entry:
             meshes[mesh.name] = entry
     programs = [{**one, "spirv": arrays.view(one["spirv"], "uint32")} for one in collection.programs.entries]
@@ -124,4 +123,4 @@ def write_trace(path, frames, draws_of_frames, collection, source):
     files.append((path, json_text({key: value for key, value in trace.items() if value or key in ("meshes", "frames")})
                   .encode()))
     write_all(files)
-    return arrays.size, triangles
+    return sum(len(data) for _, data in files)
