@@ -19,6 +19,7 @@ build=(
 )
 capture=(
   renderdoc python3-renderdoc python3-numpy
+  python3-pil  # compressed textures
   mesa-vulkan-drivers libgl1-mesa-dri xvfb  # to capture without a GPU and a display
 )
 test=(

@@ -3,10 +3,12 @@ import bisect
 import os
 import re
 
+import numpy as np
 import renderdoc as rd
 
-from passes import Action, clears_of
+import srgb
 from images import Format, decode_color, decode_depth, size_in_bytes, stored
+from passes import Action, clears_of
 
 _NULL = rd.ResourceId.Null()
 _READS = re.compile("_Resource|_Constants|Src|Barrier|InputTarget|Unused|Discard")  # names of uses that write nothing
@@ -99,9 +101,15 @@ class Replay:
 
     def color_picture(self, texture):
         """height x width x 4 float32 as stored, row 0 on top, the mean of the samples; None if it cannot be read."""
-        samples = [decode_color(self._bytes(texture, sample=sample), *self.size_of(texture), self.format_of(texture))
+        format = self.format_of(texture)
+        samples = [decode_color(self._bytes(texture, sample=sample), *self.size_of(texture), format)
                    for sample in range(self.samples_of(texture))]
-        return None if samples[0] is None else sum(samples) / len(samples)
+        if samples[0] is None or len(samples) == 1:
+            return samples[0]
+        if format.numbers != "UNormSRGB":
+            return sum(samples) / len(samples)
+        mean = sum(srgb.to_linear(sample[..., :3]) for sample in samples) / len(samples)
+        return np.concatenate([srgb.from_linear(mean), sum(samples)[..., 3:] / len(samples)], -1, dtype=np.float32)
 
     def depth_picture(self, texture):
         """height x width float32 of window depths, row 0 on top, of sample 0; None if it cannot be read."""
