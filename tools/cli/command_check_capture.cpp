@@ -102,7 +102,7 @@ class FrameCheck {
       : trace_(trace), number_(number), frame_(trace.frames[number]), textures_(textures), output_(output) {
     // A pixel's depths, and what is rasterized at a time.
     require_memory(trace, frame_, 64, "frame " + std::to_string(number), machine_memory());
-    found_ = centre_depths(trace, without_blending(frame_), &textures);
+    found_ = sampled_depths(trace, without_blending(frame_), &textures);
     json_["index"] = number;
     if (frame_.capture.pictures.depth.empty())
       text_ += name() + "the trace has no captured depth\n";
@@ -150,7 +150,7 @@ class FrameCheck {
   const Frame& frame_;
   const TextureSet& textures_;
   OutputFolder* output_;
-  CentreDepths found_;
+  SampledDepths found_;
   Json json_;
   std::string text_;
 };
@@ -190,12 +190,11 @@ void add_check_capture_command(CommandLine& line, InterruptGate& gate) {
   command.add_flag("--json", arguments->json, "print the result as JSON");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.footer(
-      "Depth: draws what writes depth, with one sample at each pixel's centre, and compares it with the depth buffer "
-      "in\n"
-      "the trace. Prints the share of covered pixels that both cover, the share of those whose depths agree to 1e-6 "
-      "and\n"
-      "to 1e-4, and the ten draws with the most pixels that differ by more. In the pictures, green pixels are equal,\n"
-      "yellow ones close and red ones different; blue pixels are covered only here, magenta ones only in the program.\n"
+      "Depth: draws what writes depth, at the first of each pixel's samples, and compares it with the depth buffer in\n"
+      "the trace. Prints the share of covered pixels that both cover, the share of those whose depths agree to 1e-6\n"
+      "and to 1e-4, and the ten draws with the most pixels that differ by more. In the pictures, green pixels are\n"
+      "equal, yellow ones close and red ones different; blue pixels are covered only here, magenta ones only in the\n"
+      "program.\n"
       "Colour: draws the frame with as many samples as the program had, and compares it with the picture in the "
       "trace,\n"
       "as codes of 8 bits. Prints the share of pixels that differ by at most 2 in all channels, and the ten draws "

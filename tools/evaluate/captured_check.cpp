@@ -35,7 +35,7 @@ struct PixelMatch {
   double difference = 0;
 };
 
-PixelMatch match_at(const CapturedPictures& captured, const CentreDepths& found, std::size_t pixel) {
+PixelMatch match_at(const CapturedPictures& captured, const SampledDepths& found, std::size_t pixel) {
   const bool here = found.draw[pixel] != kNoDraw, there = captured.depth[pixel] != captured.clear_depth;
   if (!here || !there) return {here ? Match::only_here : there ? Match::only_there : Match::nothing};
   const double difference = std::abs(found.depth[pixel] - captured.depth[pixel]);
@@ -78,16 +78,18 @@ Frame without_blending(Frame frame) {
   return frame;
 }
 
-CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
+SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
   StageCounters ignored;
   const SetupTriangles triangles = vertex_setup(trace, frame, ignored);
   const SurfaceShader shader(triangles, trace, frame, textures, {});
   const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
   const TileShader whole_shader(shader, whole);
-  const Sampling centre{CellGrid{}, standard_pattern(1)};
-  const SampledTriangles samples{triangles, whole, centre};
+  const Sampling first{CellGrid{}, only(standard_pattern(static_cast<int>(frame.capture.pictures.samples)), 0)};
+  const auto in_pixel = [](std::int32_t place) { return static_cast<float>(place) / kSubpixelUnits; };
+  const glm::vec2 at(in_pixel(first.pattern.x[0]), in_pixel(first.pattern.y[0]));
+  const SampledTriangles samples{triangles, whole, first};
   const std::vector<bool> writers = writers_of(frame);
-  SampleTile surface(whole, centre);
+  SampleTile surface(whole, first);
   std::vector<SampleFragment> fragments;
   std::vector<SampleAccess> accesses;
   TriangleList list;
@@ -95,8 +97,8 @@ CentreDepths centre_depths(const Trace& trace, const Frame& frame, const Texture
     fragments.clear();
     sample_raster(samples, list, ignored, fragments);
     if (!shader.is_flat()) {
-      const std::vector<glm::vec2> centres(fragments.size(), glm::vec2(0.5f));
-      alpha_test(whole_shader, {whole, centre, AlphaCoverage::test, centres}, ignored, fragments);
+      const std::vector<glm::vec2> places(fragments.size(), at);
+      alpha_test(whole_shader, {whole, first, AlphaCoverage::test, places}, ignored, fragments);
     }
     depth_test(samples, fragments, ignored, surface, accesses);
     list.clear();
@@ -107,14 +109,14 @@ CentreDepths centre_depths(const Trace& trace, const Frame& frame, const Texture
   }
   draw_list();
 
-  CentreDepths found{std::vector<double>(whole.pixels()), std::vector<std::uint32_t>(whole.pixels(), kNoDraw)};
+  SampledDepths found{std::vector<double>(whole.pixels()), std::vector<std::uint32_t>(whole.pixels(), kNoDraw)};
   for (std::size_t pixel = 0; pixel < whole.pixels(); ++pixel) {
     const std::uint32_t triangle = surface.triangle[pixel];
     if (triangle == kNoTriangle) continue;
     const std::uint32_t draw = found.draw[pixel] = triangles.draws[triangle];
     const DrawPlacement placement = triangles.placements.empty() ? DrawPlacement{} : triangles.placements[draw];
-    const double x = static_cast<double>(pixel % frame.width) + 0.5, y = static_cast<double>(pixel / frame.width) + 0.5;
-    const double depth = triangles.triangles[triangle].depth.at(x, y);
+    const double x = static_cast<double>(pixel % frame.width), y = static_cast<double>(pixel / frame.width);
+    const double depth = triangles.triangles[triangle].depth.at(x + at.x, y + at.y);
     found.depth[pixel] = std::clamp((depth - placement.window_offset) / placement.window_scale, 0.0, 1.0);
   }
   return found;
@@ -124,7 +126,7 @@ double CapturedCheck::coverage() const { return part_of(both, here + there - bot
 double CapturedCheck::close_part() const { return part_of(close, both); }
 double CapturedCheck::equal_part() const { return part_of(equal, both); }
 
-CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
+CapturedCheck check_captured(const Frame& frame, const SampledDepths& found) {
   const CapturedPictures& captured = frame.capture.pictures;
   if (captured.depth.empty() || captured.depth.size() != found.draw.size())
     throw std::invalid_argument("the frame has no captured depth");
@@ -144,7 +146,7 @@ CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
   return check;
 }
 
-std::vector<std::uint8_t> difference_picture(const Frame& frame, const CentreDepths& found) {
+std::vector<std::uint8_t> difference_picture(const Frame& frame, const SampledDepths& found) {
   using Rgb = std::array<std::uint8_t, 3>;
   constexpr Rgb kColors[] = {{48, 48, 48}, {32, 128, 48}, {224, 200, 32}, {220, 40, 32}, {48, 96, 240}, {224, 48, 224}};
   std::vector<std::uint8_t> picture;

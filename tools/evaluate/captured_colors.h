@@ -23,8 +23,8 @@ struct ColorCheck {
   double close_part() const;  // of the pixels
 };
 
-// `draws`: of each pixel the draw that has it, as CentreDepths::draw. Throws std::invalid_argument unless the frame has
-// a captured picture, and `image` and `draws` have its size.
+// `draws`: of each pixel the draw that has it, as SampledDepths::draw. Throws std::invalid_argument unless the frame
+// has a captured picture, and `image` and `draws` have its size.
 ColorCheck check_colors(const Trace& trace, const Frame& frame, const Image& image,
                         const std::vector<std::uint32_t>& draws);
 

@@ -33,7 +33,7 @@ Trace empty_trace() {
 }
 
 CapturedCheck check(const Trace& trace) {
-  return check_captured(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
+  return check_captured(trace.frames[0], sampled_depths(trace, trace.frames[0], nullptr));
 }
 
 TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
@@ -43,7 +43,7 @@ TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
   DepthState untested;
   untested.test = false;
   add_quad(trace, {0, 0}, {8, 8}, 0.125f, untested);  // writes no depth
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
       const std::size_t pixel = y * kSize + x;
@@ -58,9 +58,19 @@ TEST(CapturedCheck, ReversedDepthIsWindowDepthToo) {
   Trace trace = empty_trace();
   add_quad(trace, {0, 0}, {8, 8}, 0.25f, {.function = Compare::greater});
   add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.function = Compare::greater});
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   EXPECT_NEAR(found.depth[0], 0.75, 1e-12);
   EXPECT_NEAR(found.depth[kSize - 1], 0.25, 1e-12);
+}
+
+// Of four samples the first is 6/16 px from the left and 2/16 px from the top.
+TEST(CapturedCheck, LooksAtTheFirstSample) {
+  Trace trace = empty_trace();
+  trace.frames[0].capture.pictures.samples = 4;
+  add_quad(trace, {0, 0}, {8, 8}, 0.5f);
+  std::vector<glm::vec3>& corners = trace.meshes[0].positions;
+  corners[1].z = corners[2].z = 0.5f;  // window depth 0.5 at the left and 0.75 at the right
+  EXPECT_NEAR(sampled_depths(trace, trace.frames[0], nullptr).depth[0], 0.5 + 0.25 * 0.375 / kSize, 1e-9);
 }
 
 // Only what is drawn after the last clear is in the program's depth buffer at the end.
@@ -68,7 +78,7 @@ TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   Trace trace = empty_trace();
   add_quad(trace, {0, 0}, {8, 8}, 0.5f);
   add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.cleared_before = true});
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   EXPECT_EQ(found.draw[0], 1u);
   EXPECT_NEAR(found.depth[0], 0.75, 1e-6);  // a group in front, or behind, keeps fewer bits
   EXPECT_EQ(found.draw[kSize - 1], kNoDraw);
@@ -84,8 +94,8 @@ TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   draws[1].state.blend = Blend{{BlendFactor::source_alpha, BlendFactor::one}};
   trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
   draws[1].material = 0;
-  EXPECT_EQ(centre_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
-  const CentreDepths found = centre_depths(trace, without_blending(trace.frames[0]), nullptr);
+  EXPECT_EQ(sampled_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
+  const SampledDepths found = sampled_depths(trace, without_blending(trace.frames[0]), nullptr);
   EXPECT_EQ(found.draw[0], 0u);
   EXPECT_NEAR(found.depth[0], 0.5, 1e-12);
   EXPECT_EQ(found.draw[kSize - 1], 1u);
@@ -122,7 +132,7 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
   EXPECT_EQ(found.draws[2].draw, 0u);
   EXPECT_EQ(found.draws[2].differing, 1u);
   const std::vector<std::uint8_t> picture =
-      difference_picture(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
+      difference_picture(trace.frames[0], sampled_depths(trace, trace.frames[0], nullptr));
   ASSERT_EQ(picture.size(), 3 * 64u);
   EXPECT_NE(picture[0], picture[3]);
 }
