@@ -103,11 +103,11 @@ class FrameCheck {
     // A pixel's depths, and what is rasterized at a time.
     require_memory(trace, frame_, 64, "frame " + std::to_string(number), machine_memory());
     found_ = sampled_depths(trace, without_blending(frame_), &textures);
-    json_["index"] = number;
     if (frame_.capture.pictures.depth.empty())
       text_ += name() + "the trace has no captured depth\n";
     else
       check_depths();
+    json_["index"] = number;
     if (frame_.capture.pictures.color) check_picture();
   }
 
@@ -119,7 +119,7 @@ class FrameCheck {
 
   void check_depths() {
     const CapturedCheck check = check_captured(frame_, found_);
-    json_.update(to_json(check));
+    json_ = to_json(check);
     text_ += name() + text_of(check);
     write("depth", difference_picture(frame_, found_));
   }
