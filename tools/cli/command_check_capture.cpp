@@ -163,9 +163,9 @@ void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
     require_writable_folder(arguments.output);
     output.emplace(arguments.output, gate);
   }
-  const std::vector<DrawNote> notes = notes_of(trace, frames);
-  tell_notes(notes);
   const TextureSet textures(trace);
+  const std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs());
+  tell_notes(notes);
   Json json = {{"beampipe_check_capture", 1}, {"trace", arguments.trace}, {"frames", Json::array()}};
   if (!notes.empty()) json["notes"] = notes_form().write(notes);
   std::string text;

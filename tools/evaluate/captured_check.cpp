@@ -80,7 +80,8 @@ Frame without_blending(Frame frame) {
 
 SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
   StageCounters ignored;
-  const SetupTriangles triangles = vertex_setup(trace, frame, ignored);
+  SetupTriangles triangles = vertex_setup(trace, frame, ignored);
+  if (textures) without_refused(triangles, frame, textures->programs());
   const SurfaceShader shader(triangles, trace, frame, textures, {});
   const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
   const TileShader whole_shader(shader, whole);

@@ -6,11 +6,18 @@
 
 namespace beampipe {
 
-std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames) {
+std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs) {
   std::vector<DrawNote> notes;
-  for (const std::size_t frame : frames)
+  for (const std::size_t frame : frames) {
     for (const DrawNote& note : plan_draws(trace, trace.frames[frame]).notes)
       add_note(notes, note.reason, note.left_out, note.draws, note.triangles);
+    for (const Draw& draw : trace.frames[frame].draws)
+      if (draw.program && !programs.find(draw.program->program))
+        add_note(notes,
+                 "in one grey, as shader " + in_quotes(trace.programs[draw.program->program].name) +
+                     " cannot run: " + programs.error(draw.program->program),
+                 false, 1, trace.meshes[draw.mesh].triangles.size());
+  }
   return notes;
 }
 

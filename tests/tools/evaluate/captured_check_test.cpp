@@ -164,8 +164,8 @@ TEST(DrawNotes, OfSeveralFramesAreAddedUp) {
   add_quad(trace, {0, 0}, {8, 8}, 0.5f);
   trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::equal};
   trace.frames.push_back(trace.frames[0]);
-  EXPECT_EQ(notes_of(trace, {0, 1}), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));
-  EXPECT_EQ(notes_of(trace, {1}), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
+  EXPECT_EQ(notes_of(trace, {0, 1}, ProgramSet(trace)), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));
+  EXPECT_EQ(notes_of(trace, {1}, ProgramSet(trace)), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
 }
 
 }  // namespace beampipe::captured_check_test
