@@ -274,6 +274,7 @@ class ViewReader {
       float ratio = 1;
       if (sampler_.anisotropy > 1 && !is_cube() && most > 0)
         ratio = std::min(most / least, sampler_.anisotropy);  // infinite where least is 0
+      if (!(ratio >= 1)) ratio = 1;
       found.samples = static_cast<std::uint32_t>(std::ceil(ratio));
       found.longer = lengths[1] > lengths[0] ? 1 : 0;
       found.before = std::log2(most / ratio);

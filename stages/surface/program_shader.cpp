@@ -193,8 +193,8 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
         lanes[1] = {first + (at ^ 1), middle(place.x ^ 1), middle(place.y)};
         lanes[2] = {first + (at ^ 2), middle(place.x), middle(place.y ^ 1)};
       } else if (in_groups) {
-        lanes[1] = {first + 1, x + place.right.x, y + place.right.y};
-        lanes[2] = {first + 2, x, y + place.down};
+        lanes[1] = {first + 1, x + 1, y};
+        lanes[2] = {first + 2, x, y + 1};
       }
       main_lanes[i] = lanes[0].number;
       const std::size_t count = in_groups ? 3 : 1;

@@ -1,8 +1,8 @@
 // Runs the fragment shaders of draws with a program, with what each draw binds.
 //
-// Inputs come from Mesh::varyings, of the triangle's planes. Derivatives are differences between places: of a pixel and
-// its neighbours in a 2x2 quad, or of a place and those one footprint to the right and below, from the planes. These
-// two are helper invocations, which cost as much as others.
+// Inputs come from Mesh::varyings, of the triangle's planes. Derivatives are per pixel, whatever part of it a colour
+// stands for: differences between a pixel and its neighbours in a 2x2 quad, or between a place and those one pixel to
+// the right and below, from the planes. These two are helper invocations, which cost as much as others.
 //
 // Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point, and
 // all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1.
@@ -22,14 +22,12 @@
 
 namespace beampipe {
 
-// Where a program runs, in a pixel, and how far away its neighbours to the right and below are.
+// Where a program runs.
 struct ProgramPlace {
   std::uint32_t triangle = 0;
-  std::int32_t x = 0, y = 0;  // the pixel
-  float u = 0.5f, v = 0.5f;   // in it
-  glm::vec2 right{1, 0};      // in pixels
-  float down = 1;
-  bool in_quad = false;            // the neighbours are the centres of pixels of its quad instead
+  std::int32_t x = 0, y = 0;       // the pixel
+  float u = 0.5f, v = 0.5f;        // in it
+  bool in_quad = false;            // derivatives are those of its quad
   bool stays_in_triangle = false;  // inputs are those of the nearest point of the triangle, about
 };
 

@@ -358,20 +358,15 @@ glm::vec3 SurfaceShader::stored_color(const glm::vec3& linear) const {
   return stored;
 }
 
-ProgramPlace SurfaceShader::program_place(const Invocation& invocation, bool is_color) const {
-  const auto& [triangle, place, footprint] = invocation;
-  ProgramPlace found{.triangle = triangle, .x = place.x, .y = place.y};
-  if (is_color && rules_.colors == SurfaceColors::by_pixel) {
-    found.stays_in_triangle = true;
-    return found;
-  }
-  found.u = place.u, found.v = place.v;
-  if (rules_.derivatives == Derivatives::quad) {
-    found.in_quad = true;
-  } else if (footprint.yy > 0) {  // a point has the derivatives of a pixel
-    found.right = {footprint.xx, footprint.xy}, found.down = footprint.yy;
-  }
-  return found;
+ProgramPlace SurfaceShader::program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const {
+  if (is_color && rules_.colors == SurfaceColors::by_pixel)
+    return {.triangle = triangle, .x = place.x, .y = place.y, .stays_in_triangle = true};
+  return {.triangle = triangle,
+          .x = place.x,
+          .y = place.y,
+          .u = place.u,
+          .v = place.v,
+          .in_quad = rules_.derivatives == Derivatives::quad};
 }
 
 void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {
@@ -384,8 +379,7 @@ void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4
   }
 }
 
-glm::vec4 SurfaceShader::run_program(const Invocation& invocation, bool is_color, TexelRequests* texels) const {
-  const ProgramPlace place = program_place(invocation, is_color);
+glm::vec4 SurfaceShader::run_program(const ProgramPlace& place, TexelRequests* texels) const {
   glm::vec4 color;
   run_programs({&place, 1}, &color, texels);
   return color;
@@ -416,7 +410,7 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
 
 float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
-  if (!is_opaque(triangle) && is_program(triangle)) return run_program({triangle, place, footprint}, false, texels).a;
+  if (!is_opaque(triangle) && is_program(triangle)) return run_program(program_place(triangle, place, false), texels).a;
   return alpha_there(
       triangle, place, footprint, [&](const Texture& given, const glm::vec2& uv, const TextureSlopes& slopes) {
         const Texture texture = filtered_by(given, rules_.texture_taps);
@@ -707,8 +701,8 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
 
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                 TexelRequests* texels) const {
+  if (is_program(triangle)) return run_program(program_place(triangle, place, true), texels);
   const Invocation invocation{triangle, place, footprint};
-  if (is_program(triangle)) return run_program(invocation, true, texels);
   PointInputs<float> inputs;
   find_inputs({&invocation, 1}, texels, &inputs);
   SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
@@ -775,7 +769,8 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
   for (Batch& batch : batches) finish(batch);
   for (const auto& [draw, numbers] : of_programs) {
     std::vector<ProgramPlace> places;
-    for (const std::size_t i : numbers) places.push_back(program_place(invocations[i], true));
+    for (const std::size_t i : numbers)
+      places.push_back(program_place(invocations[i].triangle, invocations[i].place, true));
     std::vector<glm::vec4> found(places.size());
     run_programs(places, found.data(), texels);
     for (std::size_t i = 0; i < numbers.size(); ++i) colors[numbers[i]] = glm::vec3(found[i]);
@@ -786,12 +781,12 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
 void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                TexelRequests& texels) const {
   if (is_flat(triangle)) return;
-  const Invocation invocation{triangle, place, footprint};
   if (is_program(triangle)) {
-    run_program(invocation, true, &texels);
-  } else {
-    find_inputs({&invocation, 1}, &texels, nullptr);
+    run_program(program_place(triangle, place, true), &texels);
+    return;
   }
+  const Invocation invocation{triangle, place, footprint};
+  find_inputs({&invocation, 1}, &texels, nullptr);
 }
 
 }  // namespace beampipe

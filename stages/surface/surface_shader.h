@@ -222,9 +222,9 @@ class SurfaceShader {
     return is_program(triangle) ? programs_.alpha_mode(triangles_.draws[triangle]) : material(triangle).alpha_mode;
   }
   // Where a program runs. `is_color`: rules say where; else it is at the place itself.
-  ProgramPlace program_place(const Invocation& invocation, bool is_color) const;
+  ProgramPlace program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const;
   // Color and alpha.
-  glm::vec4 run_program(const Invocation& invocation, bool is_color, TexelRequests* texels) const;
+  glm::vec4 run_program(const ProgramPlace& place, TexelRequests* texels) const;
   // Of programs of one draw. Colours are rounded.
   void run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const;
   // As the frame's target has it.
