@@ -150,9 +150,9 @@ void Decoder::sample(const Instruction& instruction, ImageAction action, bool is
   read_image_operands(operands.subspan(next), op, has_slopes);
   if (is_implicit && action != ImageAction::gather) {
     draft_.program.takes_differences = true;
-    for (std::uint32_t i = 0; i < dimensions; ++i) {  // the texture unit subtracts
-      op.dx[i] = emit_free(Code::dx, op.coordinates[i]);
-      op.dy[i] = emit_free(Code::dy, op.coordinates[i]);
+    for (std::uint32_t i = 0; i < dimensions; ++i) {  // the texture unit subtracts once for a quad
+      op.dx[i] = emit_free(Code::dx_coarse, op.coordinates[i]);
+      op.dy[i] = emit_free(Code::dy_coarse, op.coordinates[i]);
     }
   }
   const std::uint32_t results = action == ImageAction::query_lod                 ? 2

@@ -185,19 +185,20 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
       const ProgramPlace& place = places[i];
       const std::size_t first = in_groups ? i * kGroup : i;
       const float x = static_cast<float>(place.x) + place.u, y = static_cast<float>(place.y) + place.v;
-      std::array<Lane, 3> lanes{{{first, x, y}}};
+      std::array<Lane, kGroup> lanes{{{first, x, y}}};
       if (in_groups && place.in_quad) {
         const std::size_t at = static_cast<std::size_t>((place.x & 1) + 2 * (place.y & 1));
         const auto middle = [](std::int32_t pixel) { return static_cast<float>(pixel) + 0.5f; };
         lanes[0].number = first + at;
         lanes[1] = {first + (at ^ 1), middle(place.x ^ 1), middle(place.y)};
         lanes[2] = {first + (at ^ 2), middle(place.x), middle(place.y ^ 1)};
+        lanes[3] = {first + (at ^ 3), middle(place.x ^ 1), middle(place.y ^ 1)};
       } else if (in_groups) {
         lanes[1] = {first + 1, x + 1, y};
         lanes[2] = {first + 2, x, y + 1};
       }
       main_lanes[i] = lanes[0].number;
-      const std::size_t count = in_groups ? 3 : 1;
+      const std::size_t count = !in_groups ? 1 : place.in_quad ? 4 : 3;
       for (std::size_t k = 0; k < count; ++k) {
         active |= std::uint64_t{1} << lanes[k].number;
         if (k > 0) helpers |= std::uint64_t{1} << lanes[k].number;
