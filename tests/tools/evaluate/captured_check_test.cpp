@@ -2,6 +2,7 @@
 #include "tools/evaluate/captured_check.h"
 
 #include "tests/test.h"
+#include "tools/evaluate/captured_colors.h"
 #include "tools/evaluate/draw_notes.h"
 #include "traces/files/trace_io.h"
 
@@ -140,10 +141,14 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
 // A program of six draws, with instances, a depth bias, a scissor and draws without depth test.
 TEST(CapturedCheck, AgreesWithTheCapturedSample) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/captured_quads.json");
-  const CapturedCheck found = check(trace);
+  const TextureSet textures(trace);
+  const SampledDepths depths = sampled_depths(trace, without_blending(trace.frames[0]), &textures);
+  const CapturedCheck found = check_captured(trace.frames[0], depths);
   EXPECT_GT(found.there, 3000u);
   EXPECT_GE(found.coverage(), 0.999);
   EXPECT_GE(found.close_part(), 0.999);
+  const Image image = parse_technique("msaa:1").render(trace, 0).image;
+  EXPECT_GE(check_colors(trace, trace.frames[0], image, depths.draw).close_part(), 0.999);
 }
 
 TEST(CapturedCheck, NeedsACapturedDepth) {
