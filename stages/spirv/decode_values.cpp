@@ -48,6 +48,8 @@ const ShaderType& Decoder::scalar_of(std::uint32_t type) const {
 }
 
 Row Decoder::float_op(std::uint32_t width, LaneCode code, Row a, Row b) {
+  if (width == 16 && code == LaneCode::inverse_sqrt)  // rounded twice, as Mesa does; SPIR-V allows two units
+    return float_op(width, LaneCode::f_div, this->number(1), float_op(width, LaneCode::sqrt, a, kNoRow));
   const Row result = emit(code, a, b);
   if (width == 32) return result;
   switch (code) {  // of 16-bit floats, these are 16-bit floats
