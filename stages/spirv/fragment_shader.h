@@ -28,4 +28,7 @@ namespace beampipe {
 // Throws ShaderError, one line.
 LaneProgram load_fragment_shader(std::span<const std::uint32_t> words, const Specialization& specialization = {});
 
+// Does the module, which may be broken, have an instruction that discards an invocation?
+bool may_discard(std::span<const std::uint32_t> words);
+
 }  // namespace beampipe

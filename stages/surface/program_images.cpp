@@ -350,11 +350,17 @@ class ViewReader {
     return {first, std::isfinite(share) ? share : 0.0f};
   }
 
+  // On the face of a cube, one at the edge stays there.
+  Pair nearest(const Place& place, std::size_t axis, const std::array<std::uint32_t, 3>& size) const {
+    const std::int64_t found = whole(scaled(place, axis, size));
+    return {is_cube() ? std::clamp<std::int64_t>(found, 0, size[axis] - 1) : found, 0.0f};
+  }
+
   Texel in_level(const Place& place, std::uint32_t level, bool is_linear) {
     const std::array<std::uint32_t, 3> size = size_at(level);
     std::array<Pair, 3> pairs{};
     for (std::size_t axis = 0; axis < dimensions_; ++axis)
-      pairs[axis] = is_linear ? first_of_two(place, axis, size) : Pair{whole(scaled(place, axis, size)), 0.0f};
+      pairs[axis] = is_linear ? first_of_two(place, axis, size) : nearest(place, axis, size);
     const int count = is_linear ? 1 << dimensions_ : 1;
     std::array<Texel, 8> corners;
     for (int i = 0; i < count; ++i)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "simd/sample_pattern.h"
 #include "stages/surface/program_alpha.h"
@@ -16,13 +18,13 @@ constexpr std::size_t kGroup = 4;  // lanes
 // What is not a number is 0.
 float limited(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
 
-std::size_t places_per_run(const LaneProgram& program) {
-  return program.takes_differences ? kShaderLanes / kGroup : kShaderLanes;
-}
-
 // Weights at a point of the screen, in pixels.
 Barycentrics<float> weights_of(const SetupSurface& surface, float x, float y) {
   return weights_at(surface.planes, x - surface.anchor_x, y - surface.anchor_y);
+}
+
+std::size_t lane_in_quad(const ProgramPlace& place) {
+  return static_cast<std::size_t>((place.x & 1) + 2 * (place.y & 1));
 }
 
 Barycentrics<float> into_triangle(const Barycentrics<float>& weights) {
@@ -174,51 +176,95 @@ void ProgramShader::set_inputs(const BoundDraw& draw, const ProgramPlace& place,
   }
 }
 
-std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
-                                 ShaderCounts& counts) const {
+// Places at the centres of pixels of one quad share a group, where each is the other's neighbour.
+std::vector<ProgramShader::Group> ProgramShader::grouped(const LaneProgram& program,
+                                                         std::span<const ProgramPlace> places) {
+  std::vector<Group> groups;
+  std::map<std::tuple<std::uint32_t, std::int32_t, std::int32_t>, std::size_t> quads;  // by triangle and quad
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    const ProgramPlace& place = places[i];
+    if (!program.takes_differences) {
+      if (i % kGroup == 0) groups.emplace_back();
+      groups.back().places[i % kGroup] = i;
+      continue;
+    }
+    if (!place.in_quad) {
+      groups.emplace_back().places[0] = i;
+      continue;
+    }
+    const std::size_t lane = lane_in_quad(place);
+    if (place.u != 0.5f || place.v != 0.5f) {
+      groups.emplace_back().places[lane] = i;
+      continue;
+    }
+    const auto [quad, is_new] = quads.try_emplace({place.triangle, place.x >> 1, place.y >> 1}, groups.size());
+    if (is_new) groups.emplace_back();
+    std::uint32_t& there = groups[quad->second].places[lane];
+    if (there == Group::kNone) {
+      there = i;
+    } else {  // the same place again
+      groups.emplace_back().places[lane] = i;
+    }
+  }
+  return groups;
+}
+
+std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> places,
+                                 std::span<const Group> groups, glm::vec4* colors, ShaderCounts& counts) const {
+  const bool has_helpers = draw.program->takes_differences;
   std::uint64_t texels = 0;
   programs_->with_executor(draw.number, [&](ShaderExecutor& executor) {
-    const bool in_groups = draw.program->takes_differences;
     std::uint64_t active = 0, helpers = 0;
-    std::array<std::size_t, kShaderLanes> main_lanes;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const ProgramPlace& place = places[i];
-      const std::size_t first = in_groups ? i * kGroup : i;
-      const float x = static_cast<float>(place.x) + place.u, y = static_cast<float>(place.y) + place.v;
-      std::array<Lane, kGroup> lanes{{{first, x, y}}};
-      if (in_groups && place.in_quad) {
-        const std::size_t at = static_cast<std::size_t>((place.x & 1) + 2 * (place.y & 1));
-        const auto middle = [](std::int32_t pixel) { return static_cast<float>(pixel) + 0.5f; };
-        lanes[0].number = first + at;
-        lanes[1] = {first + (at ^ 1), middle(place.x ^ 1), middle(place.y)};
-        lanes[2] = {first + (at ^ 2), middle(place.x), middle(place.y ^ 1)};
-        lanes[3] = {first + (at ^ 3), middle(place.x ^ 1), middle(place.y ^ 1)};
-      } else if (in_groups) {
-        lanes[1] = {first + 1, x + 1, y};
-        lanes[2] = {first + 2, x, y + 1};
+    std::array<std::uint32_t, kShaderLanes> place_of;
+    place_of.fill(Group::kNone);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const Group& group = groups[g];
+      std::array<Lane, kGroup> lanes;
+      std::size_t count = 0;
+      const ProgramPlace* last = nullptr;
+      const auto add = [&](std::size_t lane, float x, float y, bool helps) {
+        const std::size_t number = g * kGroup + lane;
+        lanes[count++] = {number, x, y};
+        active |= std::uint64_t{1} << number;
+        if (helps) helpers |= std::uint64_t{1} << number;
+      };
+      for (std::size_t lane = 0; lane < kGroup; ++lane) {
+        if (group.places[lane] == Group::kNone) continue;
+        const ProgramPlace& place = places[group.places[lane]];
+        place_of[g * kGroup + lane] = group.places[lane];
+        last = &place;
+        const float x = static_cast<float>(place.x) + place.u, y = static_cast<float>(place.y) + place.v;
+        add(lane, x, y, false);
+        if (!has_helpers) {  // each place has a triangle of its own
+          set_inputs(draw, place, std::span(lanes).subspan(count - 1, 1), helpers, executor);
+        } else if (!place.in_quad) {
+          add(1, x + 1, y, true), add(2, x, y + 1, true);
+        }
       }
-      main_lanes[i] = lanes[0].number;
-      const std::size_t count = !in_groups ? 1 : place.in_quad ? 4 : 3;
-      for (std::size_t k = 0; k < count; ++k) {
-        active |= std::uint64_t{1} << lanes[k].number;
-        if (k > 0) helpers |= std::uint64_t{1} << lanes[k].number;
+      if (!has_helpers) continue;
+      for (std::size_t lane = 0; last->in_quad && lane < kGroup; ++lane) {
+        if (group.places[lane] != Group::kNone) continue;  // texture units look at the whole quad
+        const auto middle = [lane](std::int32_t pixel, std::size_t bit) {
+          return static_cast<float>((pixel & ~1) + static_cast<std::int32_t>(lane >> bit & 1)) + 0.5f;
+        };
+        add(lane, middle(last->x, 0), middle(last->y, 1), true);
       }
-      set_inputs(draw, place, std::span(lanes).first(count), helpers, executor);
+      set_inputs(draw, *last, std::span(lanes).first(count), helpers, executor);
     }
     ProgramImages images(*draw.program, draw.images, active & ~helpers);
     ShaderResources resources = draw.resources;
     resources.images = &images;
-    executor.run(resources, in_groups ? places.size() * kGroup : places.size(), active, helpers, counts);
+    executor.run(resources, groups.size() * kGroup, active, helpers, counts);
     texels = images.texels();
     const std::uint64_t kept = executor.kept();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const std::size_t lane = main_lanes[i];
+    for (std::size_t lane = 0; lane < kShaderLanes; ++lane) {
+      if (place_of[lane] == Group::kNone) continue;
       const auto channel = [&](std::size_t c, float otherwise) {
         return draw.outputs[c] == kNoRow ? otherwise : limited(executor.row(draw.outputs[c]).number(lane));
       };
       const bool is_there = kept >> lane & 1;
       const float alpha = draw.mode == AlphaMode::blend ? channel(3, 1.0f) : 1.0f;
-      colors[i] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : 0.0f};
+      colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : 0.0f};
     }
   });
   return texels;
@@ -227,11 +273,13 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
 std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors) const {
   if (places.empty()) return 0;
   const BoundDraw& draw = draws_[triangles_.draws[places[0].triangle]];
-  const std::size_t most = places_per_run(*draw.program);
+  const std::vector<Group> groups = grouped(*draw.program, places);
+  constexpr std::size_t kMost = kShaderLanes / kGroup;
   ShaderCounts counts;  // what is charged comes from measured()
   std::uint64_t texels = 0;
-  for (std::size_t first = 0; first < places.size(); first += most)
-    texels += run(draw, places.subspan(first, std::min(most, places.size() - first)), colors + first, counts);
+  for (std::size_t first = 0; first < groups.size(); first += kMost)
+    texels +=
+        run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, counts);
   return texels;
 }
 
@@ -256,7 +304,7 @@ ProgramShader::Cost ProgramShader::measured(std::uint32_t draw, std::span<const 
   const BoundDraw& bound = draws_[draw];
   std::array<glm::vec4, kMost> colors;
   ShaderCounts counts;
-  run(bound, places, colors.data(), counts);
+  run(bound, places, grouped(*bound.program, places), colors.data(), counts);
   const auto mean = [&](std::uint64_t sum) { return (sum + counts.invocations / 2) / counts.invocations; };
   Cost cost;
   cost.ops = {mean(counts.ops.mul_add), mean(counts.ops.add),     mean(counts.ops.bit), mean(counts.ops.fetch),

@@ -51,6 +51,8 @@ class ProgramShader {
   };
   const Cost& cost(std::uint32_t draw) const { return draws_[draw].cost; }
 
+  bool reads_images(std::uint32_t draw) const { return !draws_[draw].program->images.empty(); }
+
  private:
   struct Input {
     enum class Kind { varying, frag_coord, front_facing, helper, primitive, half, zero };
@@ -76,12 +78,18 @@ class ProgramShader {
     std::size_t number;
     float x, y;  // pixels
   };
+  // Lanes in which differences are taken, and the numbers of the places that they stand for.
+  struct Group {
+    static constexpr std::uint32_t kNone = ~0u;
+    std::array<std::uint32_t, 4> places{kNone, kNone, kNone, kNone};
+  };
 
   BoundDraw bind(const Draw& draw) const;
+  static std::vector<Group> grouped(const LaneProgram& program, std::span<const ProgramPlace> places);
   void set_inputs(const BoundDraw& draw, const ProgramPlace& place, std::span<const Lane> lanes, std::uint64_t helpers,
                   ShaderExecutor& executor) const;
-  std::uint64_t run(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
-                    ShaderCounts& counts) const;
+  std::uint64_t run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
+                    glm::vec4* colors, ShaderCounts& counts) const;
   Cost measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const;
 
   const SetupTriangles& triangles_;

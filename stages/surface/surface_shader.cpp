@@ -379,6 +379,30 @@ void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4
   }
 }
 
+template <class Visit>
+void SurfaceShader::for_each_draw(const std::vector<Invocation>& invocations, const std::vector<std::size_t>& numbers,
+                                  Visit&& visit) const {
+  std::map<std::uint32_t, std::vector<std::size_t>> of_draws;
+  for (const std::size_t i : numbers) of_draws[triangles_.draws[invocations[i].triangle]].push_back(i);
+  for (const auto& [draw, of_draw] : of_draws) {
+    std::vector<ProgramPlace> places;
+    for (const std::size_t i : of_draw)
+      places.push_back(program_place(invocations[i].triangle, invocations[i].place, true));
+    visit(places, of_draw);
+  }
+}
+
+void SurfaceShader::add_program_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const {
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < invocations.size(); ++i)
+    if (programs_.reads_images(triangles_.draws[invocations[i].triangle])) numbers.push_back(i);
+  std::vector<glm::vec4> ignored;
+  for_each_draw(invocations, numbers, [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>&) {
+    ignored.resize(places.size());
+    texels.count(programs_.shade(places, ignored.data()));
+  });
+}
+
 glm::vec4 SurfaceShader::run_program(const ProgramPlace& place, TexelRequests* texels) const {
   glm::vec4 color;
   run_programs({&place, 1}, &color, texels);
@@ -739,15 +763,15 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     batch.invocations.clear();
     batch.places.clear();
   };
-  const bool is_kept = texels && texels->are_kept();              // requests are kept in order
-  std::map<std::uint32_t, std::vector<std::size_t>> of_programs;  // by draw, numbers of invocations
+  const bool is_kept = texels && texels->are_kept();  // requests are kept in order
+  std::vector<std::size_t> of_programs;               // numbers of invocations
   std::vector<Batch> batches;
   std::size_t current = 0;  // most invocations have the shader of the one before
   for (std::size_t i = 0; i < invocations.size(); ++i) {
     const Invocation& invocation = invocations[i];
     const std::uint32_t triangle = invocation.triangle;
     if (!is_flat(triangle) && is_program(triangle)) {
-      of_programs[triangles_.draws[triangle]].push_back(i);
+      of_programs.push_back(i);
       continue;
     }
     if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
@@ -767,14 +791,12 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     if (batch.places.size() == kMostInvocations) finish(batch);
   }
   for (Batch& batch : batches) finish(batch);
-  for (const auto& [draw, numbers] : of_programs) {
-    std::vector<ProgramPlace> places;
-    for (const std::size_t i : numbers)
-      places.push_back(program_place(invocations[i].triangle, invocations[i].place, true));
-    std::vector<glm::vec4> found(places.size());
-    run_programs(places, found.data(), texels);
-    for (std::size_t i = 0; i < numbers.size(); ++i) colors[numbers[i]] = glm::vec3(found[i]);
-  }
+  for_each_draw(invocations, of_programs,
+                [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>& numbers) {
+                  std::vector<glm::vec4> found(places.size());
+                  run_programs(places, found.data(), texels);
+                  for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = glm::vec3(found[k]);
+                });
   return colors;
 }
 
@@ -782,7 +804,7 @@ void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place
                                TexelRequests& texels) const {
   if (is_flat(triangle)) return;
   if (is_program(triangle)) {
-    run_program(program_place(triangle, place, true), &texels);
+    add_program_texels({{triangle, place, footprint}}, texels);
     return;
   }
   const Invocation invocation{triangle, place, footprint};

@@ -112,6 +112,11 @@ class SurfaceShader {
   void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                   TexelRequests& texels) const;
 
+  // Does a program shade the triangle, which is not flat?
+  bool is_program(std::uint32_t triangle) const { return triangles_.surfaces[triangle].material == kProgramSurface; }
+  // As add_texels, for invocations of programs, whose requests have no order.
+  void add_program_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const;
+
   // Alpha at a place, whatever SurfaceColors says. `footprint`, `texels`: as above. 1 for opaque triangles.
   float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
               TexelRequests* texels = nullptr) const;
@@ -216,8 +221,6 @@ class SurfaceShader {
   glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                    TexelRequests* texels) const;
 
-  // Does a program shade the triangle?
-  bool is_program(std::uint32_t triangle) const { return triangles_.surfaces[triangle].material == kProgramSurface; }
   AlphaMode alpha_mode(std::uint32_t triangle) const {
     return is_program(triangle) ? programs_.alpha_mode(triangles_.draws[triangle]) : material(triangle).alpha_mode;
   }
@@ -227,6 +230,10 @@ class SurfaceShader {
   glm::vec4 run_program(const ProgramPlace& place, TexelRequests* texels) const;
   // Of programs of one draw. Colours are rounded.
   void run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const;
+  // Invocations of programs, draw by draw.
+  template <class Visit>
+  void for_each_draw(const std::vector<Invocation>& invocations, const std::vector<std::size_t>& numbers,
+                     Visit&& visit) const;
   // As the frame's target has it.
   glm::vec3 stored_color(const glm::vec3& linear) const;
 

@@ -75,6 +75,7 @@ std::vector<std::string> attributes_of(const Mesh& mesh) {
   add(mesh.uvs[0], "uv0");
   add(mesh.uvs[1], "uv1");
   add(mesh.vertex_colors, "vertex_colors");
+  add(mesh.varyings, "varyings");
   add(mesh.materials, "materials");
   return names;
 }
