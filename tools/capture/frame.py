@@ -37,6 +37,8 @@ class Frame:
             if not reason:
                 try:
                     state = draw_state.state_of(one["api"], self.width, self.height)
+                    if one["program"] is None:  # without a fragment shader there is no colour
+                        state["color_mask"] = ""
                     if not state.get("depth_write", True) and state.get("color_mask") == "" and "stencil" not in state:
                         reason, primitives = "nothing is written", len(one["triangles"])
                     elif "viewport" in state and (state["viewport"][2] <= 0 or state["viewport"][3] == 0):
