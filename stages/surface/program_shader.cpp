@@ -270,9 +270,8 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
   return texels;
 }
 
-std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors) const {
-  if (places.empty()) return 0;
-  const BoundDraw& draw = draws_[triangles_.draws[places[0].triangle]];
+std::uint64_t ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places,
+                                       glm::vec4* colors) const {
   const std::vector<Group> groups = grouped(*draw.program, places);
   constexpr std::size_t kMost = kShaderLanes / kGroup;
   ShaderCounts counts;  // what is charged comes from measured()
@@ -280,6 +279,27 @@ std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::ve
   for (std::size_t first = 0; first < groups.size(); first += kMost)
     texels +=
         run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, counts);
+  return texels;
+}
+
+std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors) const {
+  if (places.empty()) return 0;
+  const BoundDraw& draw = draws_[triangles_.draws[places[0].triangle]];
+  const std::uint64_t texels = shade_all(draw, places, colors);
+  if (draw.mode != AlphaMode::mask) return texels;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!places[i].is_there || colors[i].a > 0) continue;
+    std::array<ProgramPlace, 4> around;
+    std::array<glm::vec4, 4> found;
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      around[k] = places[i];
+      around[k].u = std::clamp(places[i].u + (k % 2 == 0 ? -0.25f : 0.25f), 0.0f, 1.0f);
+      around[k].v = std::clamp(places[i].v + (k < 2 ? -0.25f : 0.25f), 0.0f, 1.0f);
+    }
+    shade_all(draw, around, found.data());
+    const auto kept = std::ranges::find_if(found, [](const glm::vec4& color) { return color.a > 0; });
+    if (kept != found.end()) colors[i] = *kept;
+  }
   return texels;
 }
 

@@ -29,6 +29,7 @@ struct ProgramPlace {
   float u = 0.5f, v = 0.5f;        // in it
   bool in_quad = false;            // derivatives are those of its quad
   bool stays_in_triangle = false;  // inputs are those of the nearest point of the triangle, about
+  bool is_there = false;           // who asks knows that the surface is there, or near it in the pixel
 };
 
 class ProgramShader {
@@ -38,7 +39,8 @@ class ProgramShader {
 
   AlphaMode alpha_mode(std::uint32_t draw) const { return draws_[draw].mode; }
 
-  // Sets the colour of each place; alpha is 1 unless the draw is blended, and 0 where the shader discards. The places
+  // Sets the colour of each place; alpha is 1 unless the draw is blended, and 0 where the shader discards. A place that
+  // is_there then has the colour of one that is not discarded, a quarter of a pixel away, if there is one. The places
   // lie in triangles of one draw. Returns how many texels their invocations read, without helpers.
   std::uint64_t shade(std::span<const ProgramPlace> places, glm::vec4* colors) const;
 
@@ -88,6 +90,7 @@ class ProgramShader {
   static std::vector<Group> grouped(const LaneProgram& program, std::span<const ProgramPlace> places);
   void set_inputs(const BoundDraw& draw, const ProgramPlace& place, std::span<const Lane> lanes, std::uint64_t helpers,
                   ShaderExecutor& executor) const;
+  std::uint64_t shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors) const;
   std::uint64_t run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
                     glm::vec4* colors, ShaderCounts& counts) const;
   Cost measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const;

@@ -360,13 +360,14 @@ glm::vec3 SurfaceShader::stored_color(const glm::vec3& linear) const {
 
 ProgramPlace SurfaceShader::program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const {
   if (is_color && rules_.colors == SurfaceColors::by_pixel)
-    return {.triangle = triangle, .x = place.x, .y = place.y, .stays_in_triangle = true};
+    return {.triangle = triangle, .x = place.x, .y = place.y, .stays_in_triangle = true, .is_there = true};
   return {.triangle = triangle,
           .x = place.x,
           .y = place.y,
           .u = place.u,
           .v = place.v,
-          .in_quad = rules_.derivatives == Derivatives::quad};
+          .in_quad = rules_.derivatives == Derivatives::quad,
+          .is_there = is_color};
 }
 
 void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {

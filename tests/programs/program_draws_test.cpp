@@ -219,6 +219,39 @@ TEST(ProgramDraws, DiscardedFragmentsAreNotThere) {
     expect_picture(scene.trace, spec, [&](auto x, auto) { return glm::vec3(x < 5 ? background : 1); });
 }
 
+// The middle of each pixel is discarded, and the surface around it is white.
+TEST(ProgramDraws, HolesInTheMiddleOfAPixelHideNoColor) {
+  ProgramTrace scene(4, 4,
+                     ShaderParts{.body = R"(
+%at = OpLoad %v4 %coord
+%in_pixel = OpExtInst %v4 %glsl Fract %at
+%from = OpFSub %v4 %in_pixel %middle
+%far = OpExtInst %v4 %glsl FAbs %from
+%x = OpCompositeExtract %float %far 0
+%y = OpCompositeExtract %float %far 1
+%most = OpExtInst %float %glsl FMax %x %y
+%is_hole = OpFOrdLessThan %bool %most %eighth
+OpSelectionMerge %goes_on None
+OpBranchConditional %is_hole %leave %goes_on
+%leave = OpLabel
+OpKill
+%goes_on = OpLabel
+OpStore %out %f1111
+)",
+                                 .globals = kFragCoord + R"(
+%eighth = OpConstant %float 0.125
+%half_ = OpConstant %float 0.5
+%middle = OpConstantComposite %v4 %half_ %half_ %f0 %f0
+)",
+                                 .decorations = "OpDecorate %coord BuiltIn FragCoord\n",
+                                 .interface = "%coord"});
+  scene.fill();
+  // A sixteenth is missing.
+  for (const char* spec : {"reference", "beam"})
+    expect_picture(
+        scene.trace, spec, [](auto, auto) { return glm::vec3(15.0f / 16); }, 0.01f);
+}
+
 // Half a pixel of white over black is 1/2, as a target of 8 bits has it.
 TEST(ProgramDraws, StoredNumbersAreAveraged) {
   ProgramTrace scene(4, 4, ShaderParts{.body = "OpStore %out %f1111\n"});
