@@ -167,11 +167,7 @@ class TileExplainer {
  public:
   // Both, and the bin, must outlive it.
   TileExplainer(const FrameContext& context, const Bin& bin, const Comparer& comparer)
-      : comparer_(comparer),
-        background_(context.frame.background),
-        tile_(bin.tile),
-        shader_(bin.shader()),
-        truth_(bin.tile) {
+      : comparer_(comparer), background_(context.background), tile_(bin.tile), shader_(bin.shader()), truth_(bin.tile) {
     StageCounters unused;
     reference_raster(context.triangles, bin.list, tile_, unused, truth_, &shader_);
     layers_ = layers_of_pixels(truth_, tile_);

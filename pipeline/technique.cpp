@@ -4,6 +4,7 @@
 
 #include "pipeline/technique_table.h"
 #include "traces/closest_name.h"
+#include "traces/srgb.h"
 
 namespace beampipe {
 namespace {
@@ -39,7 +40,20 @@ SpecOption variant_option(const Variant& chosen, const std::vector<const Techniq
   return option;
 }
 
+// From the numbers that the frame's target stores.
+void decode(Image& image) {
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i % 4 != 3) image.rgba[i] = static_cast<float>(linear_of_srgb(image.rgba[i]));
+}
+
 }  // namespace
+
+FrameResult Technique::render(const Trace& trace, std::size_t frame, const FrameInput& run,
+                              const FrameSinks& sinks) const {
+  FrameResult result = renderer(trace, frame, run, sinks);
+  if (trace.frames[frame].target == ColorTarget::unorm) decode(result.image);
+  return result;
+}
 
 Technique parse_technique(std::string_view text) {
   const Spec spec(text);

@@ -148,9 +148,7 @@ struct Technique {
   std::uint32_t working_bytes_per_pixel = sizeof(glm::vec4);
 
   FrameResult render(const Trace& trace, std::size_t frame, const FrameInput& run = {},
-                     const FrameSinks& sinks = {}) const {
-    return renderer(trace, frame, run, sinks);
-  }
+                     const FrameSinks& sinks = {}) const;
 
   // In memory.
   std::uint32_t framebuffer_bytes_per_pixel(const MemoryParameters& memory = {}) const {

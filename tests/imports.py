@@ -10,15 +10,15 @@ The rules:
     Third-party headers are in angle brackets; only those of Highway (hwy/) may be in quotes. No include is a macro.
 2.  Folders. Imports run tools -> pipeline -> stages -> simd. All but simd may include traces, which stands alone.
     Inside traces/, files/ and scenes/ include the root, which may include scenes/. Only tools may include files/. What
-    is left includes no third-party headers but those of GLM, Highway and oneTBB.
+    is left includes no third-party headers but those of GLM, Highway and oneTBB, and in stages/spirv/ of SPIRV-Tools.
 3.  Inside tools/: cli -> sweep -> report -> claims -> evaluate -> files, where sweep leaves out claims. Only cli
     includes stress, which includes none of them. cli, report and python may include inspect, which may include evaluate
     and files. python, which includes cli as a whole program (cli/program.h), may include those too.
 4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may
     include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
-    and costs that stages share) and surface/ (what surfaces look like, wherever they are shaded): group -> surface ->
-    cost -> data -> simd. Of these, only groups and surface/ may include traces. No group includes another.
+    and costs that stages share), spirv/ (runs shaders) and surface/ (what surfaces look like, wherever they are
+    shaded): group -> surface -> spirv -> cost -> data -> simd. Of these, only groups and surface/ may include traces. No group includes another.
 6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h, X_cost.cpp and parts of its
     kernel, X_PART-inl.h, and they include no other files of the group than these and the headers in SHARED_IN_GROUP.
 7.  Not checked: tests/ and bench/, which may include anything, but which the folders above may not include.
@@ -42,10 +42,10 @@ ORDER = {
         "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
         "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
-    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}},
+    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost", "spirv"}, "spirv": {"data", "cost"}},
     "traces": {"root": {"scenes"}, "scenes": {"root"}, "files": {"root"}}}
 STAGE_GROUP = {"data", "cost", "surface"}
-WITHOUT_TRACES = {"data", "cost"}
+WITHOUT_TRACES = {"data", "cost", "spirv"}
 # Of the packages that all may use, the standard library and the system.
 LIGHT_HEADER = re.compile(r"(glm|hwy|tbb)/.*|\w+|(fcntl|malloc|unistd)\.h")
 STAGE_FILE = re.compile(r"(.*?)(?:_cost|_[a-z]+-inl)?")
@@ -86,6 +86,9 @@ in traces/, root may not include files|traces/camera.cpp|#include "traces/files/
 pipeline/ may not include traces/files/|pipeline/spec.cpp|#include "traces/files/json.h"
 may include this library|stages/data/half_bits.h|#include <half.h>
 may include this library|traces/scenes/room.cpp|#include <nlohmann/json.hpp>
+may include this library|stages/surface/sheets.cpp|#include <spirv/unified1/spirv.hpp>
+-|stages/spirv/module.h|#include <spirv/unified1/spirv.hpp>\n#include "stages/cost/counters.h"
+in stages/, spirv may not include surface|stages/spirv/module.cpp|#include "stages/surface/sheets.h"
 -|traces/files/image_file.cpp|#include <png.h>\n#include "traces/material.h"
 -|stages/beam/windows_cost.h|#include "stages/beam/windows.h"\n#include "stages/beam/specks.h"\n#include <map>
 -|stages/beam/windows.cpp|#include "stages/beam/windows_part-inl.h"
@@ -119,7 +122,8 @@ def broken_rule(source, include):
         return "our own files are included in quotes"
     if match[2]:
         is_light = folder == "tools" or place(source) == "files" or LIGHT_HEADER.fullmatch(match[2])
-        return None if is_light else "only tools/ and traces/files/ may include this library"
+        is_spirv = source.parts[:2] == ("stages", "spirv") and other in {"spirv", "spirv-tools"}
+        return None if is_light or is_spirv else "only tools/ and traces/files/ may include this library"
     if other == "hwy":
         return None
     if other in {"bench", "tests"} or other in FOLDERS and other != folder and other not in FOLDERS[folder]:

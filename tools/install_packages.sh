@@ -11,6 +11,7 @@ build=(
   libtinyobjloader-dev libtinygltf-dev
   libcli11-dev nlohmann-json3-dev
   libsqlite3-dev
+  spirv-tools spirv-headers  # reads the shaders of captured programs
   libboost-dev  # only headers: checksums, exact arithmetic, sockets
   node-d3       # D3, which becomes part of the report page
   pybind11-dev python3-dev python3-numpy  # the Python module
@@ -18,6 +19,7 @@ build=(
 )
 capture=(
   renderdoc python3-renderdoc python3-numpy
+  python3-pil  # compressed textures
   mesa-vulkan-drivers libgl1-mesa-dri xvfb  # to capture without a GPU and a display
 )
 test=(

@@ -60,13 +60,23 @@ enum class BlendFactor {
   one_minus_destination_alpha,
   source_alpha_saturate,
   constant,
+  one_minus_constant,
+  constant_alpha,
+  one_minus_constant_alpha,
 };
 enum class BlendOperation { add, subtract, reverse_subtract, min, max };
 
-// How RGB is blended with what is stored.
-struct Blend {
+struct BlendEquation {
   BlendFactor source = BlendFactor::source_alpha, destination = BlendFactor::one_minus_source_alpha;
   BlendOperation operation = BlendOperation::add;
+  bool operator==(const BlendEquation&) const = default;
+};
+
+// How a fragment is blended with what is stored.
+struct Blend {
+  BlendEquation color{};                 // of RGB
+  std::optional<BlendEquation> alpha{};  // else as RGB
+  glm::vec4 constant{0.0f};              // RGBA of the factors that are constant, 0..1
   bool operator==(const Blend&) const = default;
 };
 

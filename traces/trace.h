@@ -15,6 +15,7 @@
 #include "traces/capture_record.h"
 #include "traces/draw_state.h"
 #include "traces/material.h"
+#include "traces/program.h"
 
 namespace beampipe {
 
@@ -41,6 +42,9 @@ struct Mesh {
   std::vector<glm::vec4> tangents;       // unit length, towards u; w is the sign of the bitangent, as in glTF
   std::vector<glm::vec2> uvs[2];         // texture coordinates
   std::vector<glm::vec4> vertex_colors;  // linear RGB and alpha 0..1; times the material's base colour
+
+  // Bits of what the fragment shaders of draws with a program read, for each vertex as ShaderProgram::inputs lists it.
+  std::vector<std::uint32_t> varyings;
 };
 
 struct Draw {
@@ -52,7 +56,11 @@ struct Draw {
   std::optional<std::uint32_t> material =
       {};  // replaces the mesh's materials: index into Trace::materials; not with kd
   DrawState state{};
+  std::optional<ProgramUse> program{};  // a shader of its own; not with kd or material, and in place of the mesh's
 };
+
+// What is stored of a shader's output: its code as sRGB, or the number itself.
+enum class ColorTarget { srgb, unorm };
 
 // A pinhole camera. Lengths in scene units, 0 < near < far; fovy is the full vertical angle, in degrees, 0 < fovy <
 // 180.
@@ -87,12 +95,16 @@ struct Frame {
   glm::dmat4 view{1.0}, projection{1.0};
   Lighting lighting;
   std::vector<Draw> draws;
+  ColorTarget target = ColorTarget::srgb;
   CaptureRecord capture{};
 };
 
 struct Trace {
   std::optional<Source> source{};  // of a trace that was captured
   std::vector<TextureImage> images;
+  std::vector<ProgramImage> program_images;
+  std::vector<ProgramSampler> program_samplers;
+  std::vector<ShaderProgram> programs;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Frame> frames;

@@ -76,7 +76,7 @@ class Bin {
 
   const SetupTriangles& triangles() const { return context.triangles; }
   TileShader shader() const { return {context.shader, tile}; }
-  const glm::vec3& background() const { return context.frame.background; }
+  const glm::vec3& background() const { return context.background; }
 
   // Who looks at the bin's pixels; null: nobody.
   BinObserver* observer() { return observer_ ? &*observer_ : nullptr; }

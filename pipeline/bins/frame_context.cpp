@@ -5,6 +5,7 @@
 #include "stages/surface/sheets.h"
 #include "stages/surface/sheets_cost.h"
 #include "stages/temporal/motion.h"
+#include "traces/srgb.h"
 
 namespace beampipe {
 namespace {
@@ -13,6 +14,19 @@ ShadingRules with_input(ShadingRules rules, const FrameInput& run) {
   rules.colors = run.colors;
   rules.texture_taps = run.texture_taps;
   return rules;
+}
+
+// The background as the frame's target has it.
+glm::vec3 stored(const Frame& frame) {
+  glm::vec3 color = frame.background;
+  for (int c = 0; frame.target == ColorTarget::unorm && c < 3; ++c)
+    color[c] = static_cast<float>(encoded_as_srgb(color[c]));
+  return color;
+}
+
+const SetupTriangles& without_refused(SetupTriangles& triangles, const Frame& frame, const TextureSet* shared,
+                                      const std::optional<TextureSet>& own) {
+  return shared || own ? without_refused(triangles, frame, (shared ? *shared : *own).programs()) : triangles;
 }
 
 // Are there draws whose vertices have moved within their mesh since the last frame?
@@ -28,12 +42,13 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
       frame(job.frame),
       run(job.run),
       sinks(job.sinks),
+      background(stored(job.frame)),
       triangles(vertex_setup(trace, frame, StageTimer(sinks.timeline)(setup), has_deformed_draws(job))),
       surface_bytes(setup.bytes_written -
                     triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))),
       own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt
                                                               : std::make_optional<TextureSet>(job.trace)),
-      shader(triangles, job.trace, frame,
+      shader(without_refused(triangles, frame, run.textures, own_textures), job.trace, frame,
              run.textures   ? run.textures
              : own_textures ? &*own_textures
                             : nullptr,
@@ -43,7 +58,7 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
     (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
   }
   if (rules.takes_positions && has_alpha()) prepare_alpha_mask();
-  has_textures_ = !shader.is_flat() && !job.trace.images.empty();
+  has_textures_ = !shader.is_flat() && !(job.trace.images.empty() && job.trace.program_images.empty());
   if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);
 }
 
@@ -53,7 +68,7 @@ void FrameContext::prepare_alpha_mask() {
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
     if (triangles.is_opaque(i)) continue;
     surface_bytes += kSheetNumberBytes;
-    materials[triangles.surfaces[i].material] = true;
+    if (triangles.surfaces[i].material != kProgramSurface) materials[triangles.surfaces[i].material] = true;
   }
   textures.test_alphas(trace, materials);
   shader.set_sheets(number_sheets(triangles, frame, StageTimer(sinks.timeline)(setup)));

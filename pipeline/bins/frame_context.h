@@ -17,6 +17,7 @@ struct FrameContext {
   const FrameInput& run;
   const FrameSinks sinks;
   StageCounters setup;          // of one run of vertex_setup over the whole frame
+  glm::vec3 background;         // as SurfaceShader has colours
   SetupTriangles triangles;     // in primitive order
   std::uint64_t surface_bytes;  // of planes, vertices and sheets of triangles with materials, in the modelled machine
   std::optional<TextureSet> own_textures;

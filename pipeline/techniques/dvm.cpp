@@ -165,7 +165,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
     if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
   });
   run_on_tiles(context, StageId::dilate, result, [&](const Tile& tile, const BinStage& stage) {
-    dilate({quads, context.triangles.draws, frame.background, options.room}, tile, stage.timed(), over_time.current);
+    dilate({quads, context.triangles.draws, context.background, options.room}, tile, stage.timed(), over_time.current);
     const std::vector<SampleQuad> here = quads.of(tile);
     stage.streams((tile.pixels() + extras_of(here).size()) * (kSampleColorBytes + kShadingSampleBytes) +
                   end_bytes(here, options.room));

@@ -38,13 +38,13 @@ FrameResult render_reference(const FrameJob& job, const ReferencePattern& patter
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up
       resolving.counters.items_out = bin.tile.pixels();
       resolving.counters.bytes_written = bin.tile.pixels() * sizeof(glm::vec4);
-      return bin.finish(std::vector(bin.tile.pixels(), glm::vec4(job.frame.background, 0)));
+      return bin.finish(std::vector(bin.tile.pixels(), glm::vec4(context.background, 0)));
     }
     const TileShader shader = bin.shader();
     ReferenceTile samples(bin.tile, pattern);
     reference_raster(context.triangles, bin.list, bin.tile, bin.stage(StageId::reference_raster).timed(), samples,
                      &shader);
-    bin.finish(resolve(samples, bin.tile, shader, job.frame.background, resolving.timed()));
+    bin.finish(resolve(samples, bin.tile, shader, context.background, resolving.timed()));
   });
 }
 

@@ -31,12 +31,19 @@ std::vector<glm::vec2> SamplePlaces::of(const std::vector<SampleFragment>& fragm
   return places;
 }
 
-void SamplePlaces::add_texels(const SampleFragment& fragment, TexelRequests& texels) const {
+void SamplePlaces::add_texels(const SampleFragment& fragment, TexelRequests& texels,
+                              std::vector<Invocation>& of_programs) const {
+  const SurfaceShader& shader = bin_.context.shader;
+  if (shader.is_flat(fragment.triangle)) return;
   const glm::vec2 place = of(fragment);
   const CellGrid& grid = sampling_.grid;
-  bin_.context.shader.add_texels(fragment.triangle,
-                                 {grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y},
-                                 sampling_.grid.shading_width(), texels);
+  const ShadingPlace there{grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y};
+  const float width = sampling_.grid.shading_width();
+  if (shader.is_program(fragment.triangle)) {
+    of_programs.push_back({fragment.triangle, there, width});
+  } else {
+    shader.add_texels(fragment.triangle, there, width, texels);
+  }
 }
 
 void SamplePlaces::add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const {
@@ -48,20 +55,22 @@ void SamplePlaces::add_texels(std::uint32_t triangle, std::size_t cell, TexelReq
 
 void SamplePlaces::add_quad_texels(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const {
   const SamplePlaces helpers(bin_, sampling_, at_ == ShadeAt::centroid ? ShadeAt::centre : at_);
+  std::vector<Invocation> of_programs;
   for (std::size_t first = 0, end = 0; first < fragments.size(); first = end) {
     std::uint32_t covered = 0;  // bit for each cell of the quad
     for (; end < fragments.size() && fragments[end].quad == fragments[first].quad; ++end) {
       covered |= 1u << ((fragments[end].y & 1) * 2 + (fragments[end].x & 1));
-      add_texels(fragments[end], texels);
+      add_texels(fragments[end], texels, of_programs);
     }
     SampleFragment helper = fragments[first];
     for (std::int32_t cell = 0; cell < 4; ++cell) {
       if (covered >> cell & 1) continue;
       helper.x = (fragments[first].x & ~1) + cell % 2, helper.y = (fragments[first].y & ~1) + cell / 2;
-      helpers.add_texels(helper, texels);
+      helpers.add_texels(helper, texels, of_programs);
     }
     texels.end_request();
   }
+  bin_.context.shader.add_program_texels(of_programs, texels);
 }
 
 }  // namespace beampipe

@@ -33,7 +33,8 @@ class SamplePlaces {
   void add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const;
 
  private:
-  void add_texels(const SampleFragment& fragment, TexelRequests& texels) const;
+  // Those of programs are shaded together.
+  void add_texels(const SampleFragment& fragment, TexelRequests& texels, std::vector<Invocation>& of_programs) const;
 
   const Bin& bin_;
   const Sampling& sampling_;

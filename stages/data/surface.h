@@ -70,10 +70,11 @@ std::array<Barycentrics<Real>, 2> weight_slopes(const BarycentricPlanes<Real>& p
 }
 
 inline constexpr std::uint32_t kFlatSurface = ~0u;
+inline constexpr std::uint32_t kProgramSurface = kFlatSurface - 1;  // the draw's program shades it
 
 // One for each setup triangle.
 struct SetupSurface {
-  std::uint32_t material = kFlatSurface;    // index into Trace::materials; kFlatSurface: the triangle is flat
+  std::uint32_t material = kFlatSurface;    // index into Trace::materials; or one of the above
   std::uint32_t trace_triangle = 0;         // index into the triangles of its draw's mesh
   std::array<std::uint32_t, 3> vertices{};  // of that triangle: indices into SetupTriangles::vertices
   bool is_opaque = true;                    // it hides what lies behind it, wherever it covers

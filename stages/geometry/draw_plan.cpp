@@ -14,12 +14,12 @@ namespace {
 constexpr std::uint32_t kColorChannels = kRedChannel | kGreenChannel | kBlueChannel;
 
 bool is(const Blend& blend, BlendFactor source, BlendFactor destination) {
-  return blend == Blend{source, destination, BlendOperation::add};
+  return blend.color == BlendEquation{source, destination, BlendOperation::add};
 }
 
 bool replaces(const Blend& blend) { return is(blend, BlendFactor::one, BlendFactor::zero); }
 bool keeps_color(const Blend& blend) { return is(blend, BlendFactor::zero, BlendFactor::one); }
-bool is_alpha_blending(const Blend& blend) { return blend == Blend{}; }
+bool is_alpha_blending(const Blend& blend) { return blend.color == BlendEquation{}; }
 
 // The same where opacity is 1?
 bool replaces_where_opaque(const Blend& blend) {

@@ -16,6 +16,7 @@
 #include "stages/geometry/draw_plan.h"
 #include "stages/geometry/setup_formulas.h"
 #include "stages/geometry/vertex_setup_cost.h"
+#include "stages/surface/program_alpha.h"
 
 namespace beampipe {
 namespace {
@@ -117,7 +118,7 @@ glm::dvec3 position_of(const Mesh& mesh, std::size_t vertex) {
 
 // The material of a triangle; kNoMaterial: it is flat.
 std::uint32_t material_of(const Draw& draw, const Mesh& mesh, std::size_t triangle) {
-  if (draw.kd) return kNoMaterial;
+  if (draw.kd || draw.program) return kNoMaterial;
   if (draw.material) return *draw.material;
   return mesh.materials.empty() ? kNoMaterial : mesh.materials[triangle];
 }
@@ -252,6 +253,7 @@ class TriangleSetup {
         materials_(job.trace.materials),
         mesh_(job.trace.meshes[job.draw.mesh]),
         draw_(job.draw),
+        program_mode_(job.draw.program ? program_alpha_mode(job.trace, job.draw) : AlphaMode::opaque),
         first_vertex_(job.first_vertex),
         transform_mirrors_(glm::determinant(glm::dmat3(job.draw.transform)) < 0),
         to_world_(elements_of(job.draw.transform)),
@@ -435,17 +437,19 @@ class TriangleSetup {
 
   SetupSurface surface(std::size_t t, std::uint32_t material, bool front, const std::array<ScreenCorner, 3>& corners) {
     SetupSurface surface;
-    if (material == kNoMaterial || is_flat(materials_[material], mesh_)) return surface;
+    const bool has_program = draw_.program.has_value();
+    if (!has_program && (material == kNoMaterial || is_flat(materials_[material], mesh_))) return surface;
     ++work_.surfaces;
     const glm::uvec3& index = mesh_.triangles[t];
-    surface.material = material;
+    surface.material = has_program ? kProgramSurface : material;
     surface.trace_triangle = static_cast<std::uint32_t>(t);
-    const AlphaMode mode = materials_[material].alpha_mode;
+    const AlphaMode mode = has_program ? program_mode_ : materials_[material].alpha_mode;
     surface.is_opaque = mode == AlphaMode::opaque || (mode == AlphaMode::blend && screen_.placement.is_opaque);
     for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];
     surface.turned = shows_back(front);
     surface.has_own_normal = mesh_.normals.empty();
-    if (const auto& texture = materials_[material].normal_texture; texture && mesh_.tangents.empty()) {
+    const std::optional<Texture> texture = has_program ? std::nullopt : materials_[material].normal_texture;
+    if (texture && mesh_.tangents.empty()) {
       ++work_.tangents;
       const VertexShader shader(view_, draw_, mesh_);
       const std::vector<glm::vec2>& uvs = mesh_.uvs[texture->uv_set];
@@ -488,6 +492,7 @@ class TriangleSetup {
   const std::vector<Material>& materials_;
   const Mesh& mesh_;
   const Draw& draw_;
+  AlphaMode program_mode_;  // of draws with a program
   std::uint32_t first_vertex_;
   bool transform_mirrors_;
   std::array<double, 16> to_world_;
@@ -552,11 +557,15 @@ SetupWork add_draw(const DrawJob& job, SetupTriangles& out) {
   return work;
 }
 
-bool has_material(const Draw& draw, const Mesh& mesh) { return !draw.kd && (draw.material || !mesh.materials.empty()); }
+// Or a program.
+bool has_material(const Draw& draw, const Mesh& mesh) {
+  return draw.program || (!draw.kd && (draw.material || !mesh.materials.empty()));
+}
 
 std::uint64_t attribute_bytes(const Mesh& mesh) {
   return (mesh.normals.empty() ? 0u : 12u) + (mesh.tangents.empty() ? 0u : 16u) + (mesh.uvs[0].empty() ? 0u : 8u) +
-         (mesh.uvs[1].empty() ? 0u : 8u) + (mesh.vertex_colors.empty() ? 0u : 16u);
+         (mesh.uvs[1].empty() ? 0u : 8u) + (mesh.vertex_colors.empty() ? 0u : 16u) +
+         (mesh.varyings.empty() ? 0u : sizeof(std::uint32_t) * mesh.varyings.size() / mesh.positions.size());
 }
 
 // Runs the vertex shader on the attributes of a draw. Returns the bytes that it reads and writes.
@@ -574,9 +583,12 @@ void shade_vertices(const View& view, const Draw& draw, const Mesh& mesh, StageC
 }
 
 // Puts the opaque triangles of draws that win at equal depth first, the last one first.
-void put_winners_first(const std::vector<Material>& materials, SetupTriangles& all) {
+void put_winners_first(const Trace& trace, const Frame& frame, SetupTriangles& all) {
   const auto is_blended = [&](std::uint32_t i) {
-    return !all.is_opaque(i) && materials[all.surfaces[i].material].alpha_mode == AlphaMode::blend;
+    if (all.is_opaque(i)) return false;
+    const std::uint32_t material = all.surfaces[i].material;
+    return (material == kProgramSurface ? program_alpha_mode(trace, frame.draws[all.draws[i]])
+                                        : trace.materials[material].alpha_mode) == AlphaMode::blend;
   };
   const auto wins = [&](std::uint32_t i) { return all.placements[all.draws[i]].last_wins && !is_blended(i); };
   std::vector<std::uint32_t> order;
@@ -636,7 +648,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
     counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3) +
                            mesh.ws.size() * sizeof(float);
   }
-  if (!out.placements.empty()) put_winners_first(trace.materials, out);
+  if (!out.placements.empty()) put_winners_first(trace, frame, out);
   work.triangles = out.triangles.size();
   counters.items_out = out.triangles.size();
   charge(work, counters);
@@ -649,6 +661,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
 bool has_varying_surfaces(const Trace& trace, const Frame& frame) {
   return std::any_of(frame.draws.begin(), frame.draws.end(), [&](const Draw& draw) {
     const Mesh& mesh = trace.meshes[draw.mesh];
+    if (draw.program) return true;
     for (std::size_t t = 0; has_material(draw, mesh) && t < mesh.triangles.size(); ++t) {
       const std::uint32_t material = material_of(draw, mesh, t);
       if (material != kNoMaterial && !is_flat(trace.materials[material], mesh)) return true;

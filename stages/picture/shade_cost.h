@@ -24,18 +24,19 @@ inline OperationCounts pack_cost(int components) {
 struct InvocationWork {
   OperationCounts ops;
   std::uint64_t input_bytes;
+  std::uint64_t helpers = 0;  // as SurfaceShader::Work
 };
 
 inline InvocationWork whole_shader(const TileShader& shader, std::uint32_t triangle) {
   const SurfaceShader::Work& work = shader.work(triangle);
   OperationCounts ops = work.material;
-  return {ops += work.light, work.input_bytes};
+  return {ops += work.light, work.input_bytes, work.helpers};
 }
 inline InvocationWork material_half(const TileShader& shader, std::uint32_t triangle) {
   static const UnitCost flat = pack_cost(6), varying = pack_cost(8);
   const SurfaceShader::Work& work = shader.work(triangle);
   OperationCounts ops = work.material;
-  return {ops += shader.is_flat(triangle) ? flat : varying, work.input_bytes};
+  return {ops += shader.is_flat(triangle) ? flat : varying, work.input_bytes, work.helpers};
 }
 // Lighting reads the G-buffer. It computes for all flat triangles, lit or not.
 inline InvocationWork light_half(const TileShader& shader, std::uint32_t triangle) {
@@ -65,7 +66,8 @@ Invocations one_by_one(const TileShader& shader, const Items& items, WorkOf&& wo
     const SurfaceShader::Work* const of_first = &shader.work(triangle);
     while (end < items.size() && &shader.work(triangle_of(items[end])) == of_first) ++end;
     const InvocationWork work = work_of(shader, triangle);
-    result.ops += work.ops * (end - first);
+    result.invocations += work.helpers * (end - first);
+    result.ops += work.ops * ((1 + work.helpers) * (end - first));
     result.input_bytes += work.input_bytes * (end - first);
   }
   return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "stages/cost/counting.h"
@@ -11,6 +12,7 @@
 #include "stages/surface/footprint_filter.h"
 #include "stages/surface/lit_colors.h"
 #include "stages/surface/texture_filter.h"
+#include "traces/srgb.h"
 
 namespace beampipe {
 namespace {
@@ -297,15 +299,32 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
       frame_(frame),
       textures_(textures),
       rules_(rules),
+      programs_(triangles, trace, frame, textures ? &textures->programs() : nullptr),
       flat_(shade_triangles(triangles, frame.lighting)) {
   if (rules.colors == SurfaceColors::by_pixel) rules_.stored_as = AccumulatorFormat::fp32;
-  for (glm::vec3& color : flat_) round_to(rules_.stored_as, color);
+  for (glm::vec3& color : flat_) {
+    color = stored_color(color);
+    round_to(rules_.stored_as, color);
+  }
   flat_unlit_.input_bytes = flat_lit_.input_bytes = sizeof(FlatAttributes);
   flat_lit_.light = flat_light_cost(frame.lighting);
   if (is_flat()) return;
   works_.resize(trace.materials.size() * 8);
+  program_works_.resize(frame.draws.size());
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
     if (is_flat(i)) continue;
+    if (is_program(i)) {
+      Work& work = program_works_[triangles.draws[i]];
+      if (work.input_bytes > 0) continue;
+      const ProgramShader::Cost& cost = programs_.cost(triangles.draws[i]);
+      const bool in_quads = rules.derivatives == Derivatives::quad;
+      work.input_bytes = cost.input_bytes;
+      work.helpers = in_quads ? 0 : cost.helpers;
+      // Where samples decide, the run that says whether there is a surface gives its colour as well.
+      if (!triangles.is_opaque(i)) work.alpha = cost.ops * (1 + work.helpers);
+      if (!in_quads || !is_cutout(i)) work.material = cost.ops;
+      continue;
+    }
     const ShaderInputs shader = inputs_of(i);
     Work& work = works_[work_index(triangles.surfaces[i].material, shader)];
     if (work.input_bytes == 0)
@@ -328,7 +347,67 @@ const SurfaceShader::Work& TileShader::lit_flat() const {
 }
 
 const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) const {
+  if (is_program(triangle)) return program_works_[triangles_.draws[triangle]];
   return works_[work_index(triangles_.surfaces[triangle].material, inputs_of(triangle))];
+}
+
+glm::vec3 SurfaceShader::stored_color(const glm::vec3& linear) const {
+  if (frame_.target == ColorTarget::srgb) return linear;
+  glm::vec3 stored;
+  for (int c = 0; c < 3; ++c) stored[c] = static_cast<float>(encoded_as_srgb(linear[c]));
+  return stored;
+}
+
+ProgramPlace SurfaceShader::program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const {
+  if (is_color && rules_.colors == SurfaceColors::by_pixel)
+    return {.triangle = triangle, .x = place.x, .y = place.y, .stays_in_triangle = true, .is_there = true};
+  return {.triangle = triangle,
+          .x = place.x,
+          .y = place.y,
+          .u = place.u,
+          .v = place.v,
+          .in_quad = rules_.derivatives == Derivatives::quad,
+          .is_there = is_color};
+}
+
+void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {
+  const std::uint64_t count = programs_.shade(places, colors);
+  if (texels) texels->count(count);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    glm::vec3 color(colors[i]);
+    round_to(rules_.stored_as, color);
+    colors[i] = glm::vec4(color, colors[i].a);
+  }
+}
+
+template <class Visit>
+void SurfaceShader::for_each_draw(const std::vector<Invocation>& invocations, const std::vector<std::size_t>& numbers,
+                                  Visit&& visit) const {
+  std::map<std::uint32_t, std::vector<std::size_t>> of_draws;
+  for (const std::size_t i : numbers) of_draws[triangles_.draws[invocations[i].triangle]].push_back(i);
+  for (const auto& [draw, of_draw] : of_draws) {
+    std::vector<ProgramPlace> places;
+    for (const std::size_t i : of_draw)
+      places.push_back(program_place(invocations[i].triangle, invocations[i].place, true));
+    visit(places, of_draw);
+  }
+}
+
+void SurfaceShader::add_program_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const {
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < invocations.size(); ++i)
+    if (programs_.reads_images(triangles_.draws[invocations[i].triangle])) numbers.push_back(i);
+  std::vector<glm::vec4> ignored;
+  for_each_draw(invocations, numbers, [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>&) {
+    ignored.resize(places.size());
+    texels.count(programs_.shade(places, ignored.data()));
+  });
+}
+
+glm::vec4 SurfaceShader::run_program(const ProgramPlace& place, TexelRequests* texels) const {
+  glm::vec4 color;
+  run_programs({&place, 1}, &color, texels);
+  return color;
 }
 
 template <class TextureAlpha>
@@ -356,6 +435,7 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
 
 float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
+  if (!is_opaque(triangle) && is_program(triangle)) return run_program(program_place(triangle, place, false), texels).a;
   return alpha_there(
       triangle, place, footprint, [&](const Texture& given, const glm::vec2& uv, const TextureSlopes& slopes) {
         const Texture texture = filtered_by(given, rules_.texture_taps);
@@ -369,6 +449,7 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, co
 SurfaceShader::AlphaPlace SurfaceShader::alpha_place(std::uint32_t triangle, const ShadingPlace& place,
                                                      const Footprint& footprint) const {
   AlphaPlace found;
+  if (is_program(triangle)) return found;
   alpha_there(triangle, place, footprint, [&](const Texture&, const glm::vec2& uv, const TextureSlopes& slopes) {
     found = {{uv.x, uv.y}, {slopes.dx.x, slopes.dx.y}, {slopes.dy.x, slopes.dy.y}};
     return 1.0f;
@@ -380,6 +461,7 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
                                                      const Footprint& footprint, TexelRequests* texels) const {
   const float cutoff = alpha_cutoff(triangle);
   if (cutoff <= 0.0f) return {1.0f};
+  if (is_program(triangle)) return {alpha(triangle, place, footprint, texels)};
   const TestedAlpha* tested = nullptr;
   glm::vec4 shares;
   // Of a point; or what the texture's alpha is multiplied by.
@@ -404,6 +486,10 @@ SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, c
   const float cutoff = alpha_cutoff(triangle);
   CutoutPatch patch{.is_share = true, .part = 1.0f};
   if (cutoff <= 0.0f) return patch;
+  if (is_program(triangle)) {
+    patch.part = alpha(triangle, place, footprint, texels);
+    return patch;
+  }
   const TestedAlpha* tested = nullptr;
   glm::vec4 shares;
   const float factor = alpha_there(
@@ -435,6 +521,7 @@ SurfaceShader::CutoutPatch SurfaceShader::cutout_patch(std::uint32_t triangle, c
 
 CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                         TexelRequests* texels) const {
+  if (is_program(triangle)) return CutoutCover::mixed;
   const std::uint32_t material = triangles_.surfaces[triangle].material;
   if (textures_ == nullptr || textures_->alpha_test(material) == kNoAlphaTest || inputs_of(triangle).has_vertex_colors)
     return CutoutCover::mixed;
@@ -458,7 +545,7 @@ CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPla
 
 float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                  TexelRequests* texels) const {
-  if (is_flat(triangle) || material(triangle).unlit) return 0.0f;
+  if (is_flat(triangle) || is_program(triangle) || material(triangle).unlit) return 0.0f;
   const ShaderInputs shader = inputs_of(triangle);
   const auto inputs_at = [&](float x, float y, const std::array<TexturePoint*, 2>& texture_points) {
     ShadingPlace at = place;
@@ -511,6 +598,13 @@ float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& pla
 // largest and smallest at corners.
 CutoutCover SurfaceShader::cutout_cover(std::uint32_t triangle, const ShadingPlace& corner, float side) const {
   constexpr float kRounding = 1e-5f;  // of the filter and of products, generously
+  if (is_program(triangle)) {
+    // Nothing is known of a square but its middle, which stands for small ones.
+    constexpr float kSmall = 1.0f / 16;
+    if (side > kSmall) return CutoutCover::mixed;
+    const ShadingPlace middle{corner.x, corner.y, corner.u + 0.5f * side, corner.v + 0.5f * side};
+    return alpha(triangle, middle, side) > 0.0f ? CutoutCover::all : CutoutCover::none;
+  }
   const SetupSurface& surface = triangles_.surfaces[triangle];
   for (const std::uint32_t vertex : surface.vertices)
     if (!(triangles_.vertices[vertex].color[3] <= 1.0f)) return CutoutCover::mixed;
@@ -632,6 +726,7 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
 
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                 TexelRequests* texels) const {
+  if (is_program(triangle)) return run_program(program_place(triangle, place, true), texels);
   const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
   find_inputs({&invocation, 1}, texels, &inputs);
@@ -640,7 +735,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
   if (is_stored(material)) found.reflector = through_gbuffer(found.reflector);
   const Triple<float> lit = lit_color(material, found, frame_.lighting);
-  glm::vec3 color(lit[0], lit[1], lit[2]);
+  glm::vec3 color = stored_color({lit[0], lit[1], lit[2]});
   round_to(rules_.stored_as, color);
   if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
   return {color, by_pixel ? alpha(triangle, place, footprint) : limited_alpha(found.alpha)};
@@ -663,18 +758,23 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
                lit.data());
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       glm::vec3& color = colors[batch.places[i]];
-      color = lit[i];
+      color = stored_color(lit[i]);
       round_to(rules_.stored_as, color);
     }
     batch.invocations.clear();
     batch.places.clear();
   };
   const bool is_kept = texels && texels->are_kept();  // requests are kept in order
+  std::vector<std::size_t> of_programs;               // numbers of invocations
   std::vector<Batch> batches;
   std::size_t current = 0;  // most invocations have the shader of the one before
   for (std::size_t i = 0; i < invocations.size(); ++i) {
     const Invocation& invocation = invocations[i];
     const std::uint32_t triangle = invocation.triangle;
+    if (!is_flat(triangle) && is_program(triangle)) {
+      of_programs.push_back(i);
+      continue;
+    }
     if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
       colors[i] = color(triangle, invocation.place, invocation.footprint, texels);
       end_request(texels);
@@ -692,12 +792,22 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     if (batch.places.size() == kMostInvocations) finish(batch);
   }
   for (Batch& batch : batches) finish(batch);
+  for_each_draw(invocations, of_programs,
+                [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>& numbers) {
+                  std::vector<glm::vec4> found(places.size());
+                  run_programs(places, found.data(), texels);
+                  for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = glm::vec3(found[k]);
+                });
   return colors;
 }
 
 void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                TexelRequests& texels) const {
   if (is_flat(triangle)) return;
+  if (is_program(triangle)) {
+    add_program_texels({{triangle, place, footprint}}, texels);
+    return;
+  }
   const Invocation invocation{triangle, place, footprint};
   find_inputs({&invocation, 1}, &texels, nullptr);
 }

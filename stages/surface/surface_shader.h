@@ -1,5 +1,9 @@
 // What a triangle looks like at a point of a pixel: flat triangles everywhere the same, others by their material's
-// fragment shader (stages/surface/surface_formulas.h). Every technique asks here; techniques differ in where they ask.
+// fragment shader (stages/surface/surface_formulas.h) or by that which the program brought
+// (stages/surface/program_shader.h). Every technique asks here; techniques differ in where they ask.
+//
+// Colours are linear, unless the frame's target stores the numbers of programs' shaders as they are: then all colours
+// are encoded as sRGB, so that blending and means do what such a target does. Technique::render() decodes pictures.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +17,7 @@
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 #include "stages/surface/opacity.h"
+#include "stages/surface/program_shader.h"
 #include "stages/surface/surface_formulas.h"
 #include "stages/surface/texel_requests.h"
 #include "stages/surface/texture_filter.h"
@@ -86,7 +91,7 @@ class SurfaceShader {
     return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
   }
 
-  // Linear RGB. `footprint`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it
+  // RGB. `footprint`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it
   // is null.
   glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
@@ -106,6 +111,11 @@ class SurfaceShader {
   // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
   void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                   TexelRequests& texels) const;
+
+  // Does a program shade the triangle, which is not flat?
+  bool is_program(std::uint32_t triangle) const { return triangles_.surfaces[triangle].material == kProgramSurface; }
+  // As add_texels, for invocations of programs, whose requests have no order.
+  void add_program_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const;
 
   // Alpha at a place, whatever SurfaceColors says. `footprint`, `texels`: as above. 1 for opaque triangles.
   float alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
@@ -164,10 +174,12 @@ class SurfaceShader {
 
   bool is_opaque(std::uint32_t triangle) const { return triangles_.is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const {
-    return !is_opaque(triangle) && material(triangle).alpha_mode == AlphaMode::mask;
+    return !is_opaque(triangle) && alpha_mode(triangle) == AlphaMode::mask;
   }
   bool is_translucent(std::uint32_t triangle) const { return !is_opaque(triangle) && !is_cutout(triangle); }
-  float alpha_cutoff(std::uint32_t triangle) const { return material(triangle).alpha_cutoff; }
+  float alpha_cutoff(std::uint32_t triangle) const {
+    return is_program(triangle) ? Material{}.alpha_cutoff : material(triangle).alpha_cutoff;
+  }
 
   // One for each triangle (stages/surface/sheets.h). Only shaders whose fragments have mask positions need them.
   void set_sheets(std::vector<std::uint32_t> sheets) { sheets_ = std::move(sheets); }
@@ -183,6 +195,7 @@ class SurfaceShader {
   struct Work {
     OperationCounts material, light, alpha, range;  // range: of light_range()
     std::uint64_t input_bytes = 0;
+    std::uint32_t helpers = 0;  // invocations that the material needs besides, where it is not shaded in quads
   };
   const Work& work(std::uint32_t triangle) const {
     return is_flat(triangle) ? triangles_.attributes[triangle].lit ? flat_lit_ : flat_unlit_ : material_work(triangle);
@@ -207,6 +220,22 @@ class SurfaceShader {
 
   glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                    TexelRequests* texels) const;
+
+  AlphaMode alpha_mode(std::uint32_t triangle) const {
+    return is_program(triangle) ? programs_.alpha_mode(triangles_.draws[triangle]) : material(triangle).alpha_mode;
+  }
+  // Where a program runs. `is_color`: rules say where; else it is at the place itself.
+  ProgramPlace program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const;
+  // Color and alpha.
+  glm::vec4 run_program(const ProgramPlace& place, TexelRequests* texels) const;
+  // Of programs of one draw. Colours are rounded.
+  void run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const;
+  // Invocations of programs, draw by draw.
+  template <class Visit>
+  void for_each_draw(const std::vector<Invocation>& invocations, const std::vector<std::size_t>& numbers,
+                     Visit&& visit) const;
+  // As the frame's target has it.
+  glm::vec3 stored_color(const glm::vec3& linear) const;
 
   // Sets what the shader knows of a point without its textures, and where it reads them, by set of texture coordinates.
   // Null: nobody wants to know.
@@ -238,6 +267,8 @@ class SurfaceShader {
   const Frame& frame_;
   const TextureSet* textures_;
   ShadingRules rules_;
+  ProgramShader programs_;
+  std::vector<Work> program_works_;  // by draw
   std::vector<glm::vec3> flat_;
   std::vector<std::uint32_t> sheets_;  // of triangles
   Work flat_lit_, flat_unlit_;

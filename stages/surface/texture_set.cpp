@@ -11,7 +11,7 @@
 namespace beampipe {
 
 TextureSet::TextureSet(const Trace& trace, std::string name)
-    : name_(std::move(name)), chains_(2 * trace.images.size()) {
+    : name_(std::move(name)), programs_(trace), chains_(2 * trace.images.size()) {
   std::vector<bool> used(chains_.size());
   const auto use = [&](const std::optional<Texture>& texture, ColorSpace space) {
     if (texture) used[index(texture->image, space)] = true;

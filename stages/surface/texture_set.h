@@ -1,4 +1,4 @@
-// The textures of a trace as its materials read them.
+// The textures of a trace as its materials read them, and its programs.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stages/surface/mip_chain.h"
+#include "stages/surface/program_set.h"
 #include "stages/surface/tested_alpha.h"
 #include "traces/trace.h"
 
@@ -19,7 +20,7 @@ inline constexpr std::uint32_t kNoAlphaTest = ~0u;
 std::vector<std::uint32_t> number_alpha_tests(const Trace& trace);
 
 // The images of a trace in the colour spaces in which its materials read them, and the tested alpha of those cutouts
-// for which it was asked.
+// for which it was asked. And the trace's programs.
 class TextureSet {
  public:
   // `name`: of the trace, for messages.
@@ -44,10 +45,12 @@ class TextureSet {
   static std::size_t index(std::uint32_t image, ColorSpace space) {
     return 2 * std::size_t{image} + static_cast<std::size_t>(space);
   }
+  const ProgramSet& programs() const { return programs_; }
   const std::vector<MipChain>& chains() const { return chains_; }  // by index; those without a use are empty
 
  private:
   std::string name_;
+  ProgramSet programs_;
   std::vector<MipChain> chains_;
   std::vector<std::uint32_t> alpha_tests_;  // by material
   std::vector<std::uint32_t> images_of_tests_;

@@ -69,7 +69,7 @@ def start_egl(display, window):
         getattr(egl, name).restype = ctypes.c_void_p
     device = ctypes.c_void_p(egl.eglGetDisplay(display))
     config, count = ctypes.c_void_p(), ctypes.c_int()
-    wanted = (ctypes.c_int * 9)(EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_ES3_BIT, EGL_DEPTH_SIZE, 32,
+    wanted = (ctypes.c_int * 9)(EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_ES3_BIT, EGL_DEPTH_SIZE, 24,
                                 EGL_RED_SIZE, 8, EGL_NONE)
     if not (egl.eglInitialize(device, None, None) and egl.eglBindAPI(EGL_OPENGL_ES_API)
             and egl.eglChooseConfig(device, wanted, ctypes.byref(config), 1, ctypes.byref(count)) and count.value):

@@ -3,6 +3,7 @@ import contextlib
 import importlib.util
 import io
 import os
+import pickle
 import struct
 import sys
 import tempfile
@@ -15,15 +16,13 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
                 os.path.join(os.path.dirname(__file__), "../../tools/capture"))
 sys.dont_write_bytecode = True
-import frame
 import geometry
+import images
 import meshes
 import motion
 import passes
-import pixels
 import png
-import raster
-import shading
+import spirv
 import srgb
 import state
 import trace_file
@@ -50,11 +49,11 @@ class Errors(unittest.TestCase):
 class Triangles(unittest.TestCase):
     def test_topologies(self):
         for why, topology, indices, restart, expected in [
-                ("a strip turns every second one", "TriangleStrip", [5, 6, 7, 8, 9], None, [[5, 6, 7], [7, 6, 8], [7, 8, 9]]),
-                ("a fan's first vertex is everywhere", "TriangleFan", [3, 4, 5, 6], None, [[3, 4, 5], [3, 5, 6]]),
+                ("a strip turns every second one", "TriangleStrip", [5, 6, 7, 8, 9], None, [[5, 6, 7], [6, 8, 7], [7, 8, 9]]),
+                ("a fan's first vertex is everywhere", "TriangleFan", [3, 4, 5, 6], None, [[4, 5, 3], [5, 6, 3]]),
                 ("a restart begins a strip with a new orientation", "TriangleStrip",
-                 [0, 1, 2, 3, 255, 4, 5, 6, 255, 7, 8], 255, [[0, 1, 2], [2, 1, 3], [4, 5, 6]]),
-                ("restarts at both ends and in a row", "TriangleFan", [9, 9, 0, 1, 2, 9], 9, [[0, 1, 2]]),
+                 [0, 1, 2, 3, 255, 4, 5, 6, 255, 7, 8], 255, [[0, 1, 2], [1, 3, 2], [4, 5, 6]]),
+                ("restarts at both ends and in a row", "TriangleFan", [9, 9, 0, 1, 2, 9], 9, [[1, 2, 0]]),
                 ("incomplete ones are left out", "TriangleList", range(5), None, [[0, 1, 2]]),
                 ("incomplete ones are left out", "TriangleStrip", range(2), None, []),
                 ("neighbours are not corners", "TriangleList_Adj", range(6), None, [[0, 2, 4]])]:
@@ -126,27 +125,25 @@ class Windows(unittest.TestCase):
         x, y, width, height = viewport
         return x + width * (1 + ndc_x) / 2, y + height * (1 - ndc_y) / 2
 
-    def test_opengl_measures_from_the_bottom_and_vulkan_from_the_top_with_y_down(self):
-        # y = 20 + 50 * (1 + ndc) / 2 in OpenGL's window, and in Vulkan's framebuffer.
-        for y_up, low, high in ((True, self.HEIGHT - 20, self.HEIGHT - 70), (False, 20, 70)):
-            viewport = state.picture_viewport(10, 20, 100, 50, self.HEIGHT, y_up)
-            self.assertEqual(self.place(viewport, -1, -1), (10, low))
-            self.assertEqual(self.place(viewport, 1, 1), (110, high))
+    def test_y_is_down_in_clip_space(self):
+        viewport = state.picture_viewport(10, 20, 100, 50)  # y = 20 + 50 * (1 + ndc) / 2 in the framebuffer
+        self.assertEqual(self.place(viewport, -1, -1), (10, 20))
+        self.assertEqual(self.place(viewport, 1, 1), (110, 70))
 
-    def test_vulkan_with_a_negative_height_is_as_opengl(self):
-        viewport = state.picture_viewport(0, self.HEIGHT, self.WIDTH, -self.HEIGHT, self.HEIGHT, False)
+    def test_a_negative_height_turns_y_up(self):
+        viewport = state.picture_viewport(0, self.HEIGHT, self.WIDTH, -self.HEIGHT)
         self.assertEqual(viewport, [0, 0, self.WIDTH, self.HEIGHT])
 
     def test_scissors_stay_within_the_target(self):
-        self.assertEqual(state.picture_scissor(-5, -5, 20, 20, self.WIDTH, self.HEIGHT, True), [0, 85, 15, 15])
-        self.assertEqual(state.picture_scissor(190, 0, 50, 30, self.WIDTH, self.HEIGHT, False), [190, 0, 10, 30])
-        self.assertEqual(state.picture_scissor(300, 0, 50, 30, self.WIDTH, self.HEIGHT, False)[2], 0)
+        self.assertEqual(state.picture_scissor(-5, -5, 20, 20, self.WIDTH, self.HEIGHT), [0, 0, 15, 15])
+        self.assertEqual(state.picture_scissor(190, 0, 50, 30, self.WIDTH, self.HEIGHT), [190, 0, 10, 30])
+        self.assertEqual(state.picture_scissor(300, 0, 50, 30, self.WIDTH, self.HEIGHT)[2], 0)
 
 
 class States(unittest.TestCase):
-    API = {"viewport": [0, 0, 64, 32], "depth_range": [0, 1], "scissor": None, "depth_test": True, "depth_write": True,
+    API = {"viewport": [0, 32, 64, -32], "depth_range": [0, 1], "scissor": None, "depth_test": True, "depth_write": True,
            "depth_function": "Less", "bias": 0, "slope_bias": 0, "bias_clamp": 0, "depth_format": "D24",
-           "depth_clamp": False, "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None, "y_up": True}
+           "depth_clamp": False, "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None}
 
     def of(self, **changes):
         return state.state_of({**self.API, **changes}, 64, 32)
@@ -167,13 +164,18 @@ class States(unittest.TestCase):
         self.assertEqual(self.of(bias=1, depth_format="D16")["depth_bias"]["constant"], 2.0**-16)
 
     def test_blending_that_replaces_is_none(self):
-        one = {"source": "One", "destination": "Zero", "operation": "Add"}
-        self.assertEqual(self.of(blend=one), {})
+        replace = {"source": "One", "destination": "Zero", "operation": "Add"}
         mix = {"source": "SrcAlpha", "destination": "InvSrcAlpha", "operation": "Add"}
-        self.assertEqual(self.of(blend=mix)["blend"], {"source": "source_alpha", "operation": "add",
-                                                       "destination": "one_minus_source_alpha"})
+        of = lambda color, alpha: self.of(blend={"color": color, "alpha": alpha, "constant": [0, 0.5, 1, 1]})
+        self.assertEqual(of(replace, replace), {})
+        mixed = {"source": "source_alpha", "operation": "add", "destination": "one_minus_source_alpha"}
+        self.assertEqual(of(mix, mix)["blend"], mixed)
+        replaced = {"source": "one", "destination": "zero", "operation": "add"}
+        self.assertEqual(of(mix, replace)["blend"], {**mixed, "alpha": replaced})
+        constant = of({**mix, "source": "FactorRGB"}, mix)["blend"]
+        self.assertEqual((constant["source"], constant["constant"]), ("constant", [0, 0.5, 1, 1]))
         with self.assertRaises(ValueError):
-            self.of(blend={"source": "Src1Col", "destination": "Zero", "operation": "Add"})
+            of({"source": "Src1Col", "destination": "Zero", "operation": "Add"}, replace)
 
     def test_masks_and_faces(self):
         self.assertEqual(self.of(color_mask=7, front_ccw=False), {"color_mask": "rgb", "front_face": "clockwise"})
@@ -261,173 +263,92 @@ class Matrices(unittest.TestCase):
         self.assertIsNone(motion.find_matrix(old, new))
 
 
-class Rasters(unittest.TestCase):
-    QUAD = np.array([[-1, -1, 0, 1], [1, -1, 0, 1], [1, 1, 0, 1], [-1, 1, 0, 1]], np.float32)
-    TWO = np.array([[0, 1, 2], [0, 2, 3]])
-
-    def draw(self, clip, triangles, draw_state=None, cull="none", target=None, first=0):
-        target = target or raster.Target(8, 6, None)
-        for fragments in raster.fragments_of(clip, triangles, draw_state or {}, cull, target):
-            raster.draw(target, fragments, draw_state or {}, first)
-        return target
-
-    def test_two_triangles_of_a_quad_share_no_pixel(self):
-        target = raster.Target(8, 6, None)
-        fragments = list(raster.fragments_of(self.QUAD, self.TWO, {}, "none", target))[0]
-        self.assertEqual(sorted(fragments.pixel), list(range(48)))
-
-    def test_an_edge_through_pixel_centers_belongs_to_one_side(self):
-        for axis in (0, 1):  # the shared edge is at x = 4.5 of 8 pixels, and at y = 2.5 of 6
-            middle = [1 / 8, 1 / 6][axis]
-            low, high = self.QUAD.copy(), self.QUAD.copy()
-            low[low[:, axis] > 0, axis] = middle
-            high[high[:, axis] < 0, axis] = middle
-            target = raster.Target(8, 6, None)
-            found = [pixel for quad in (low, high) for fragments in
-                     raster.fragments_of(quad, self.TWO, {}, "none", target) for pixel in fragments.pixel]
-            self.assertEqual(sorted(found), list(range(48)))
-        target = raster.Target(8, 6, None)
-        below = next(raster.fragments_of(low, self.TWO, {}, "none", target)).pixel  # a top edge is part of a triangle
-        self.assertEqual(min(below) // 8, 2)
-
-    def test_random_triangles_cover_the_pixels_whose_centers_they_contain(self):
-        random = np.random.default_rng(6)
-        for _ in range(50):
-            clip = np.concatenate([random.uniform(-1.5, 1.5, (3, 2)), np.zeros((3, 1)), np.ones((3, 1))], 1)
-            target = self.draw(clip.astype(np.float32), np.array([[0, 1, 2]]))
-            x, y = (1 + clip[:, 0]) * 4, (1 - clip[:, 1]) * 3
-            for pixel in range(48):
-                px, py = pixel % 8 + 0.5, pixel // 8 + 0.5
-                sides = [(x[k - 2] - x[k]) * (py - y[k]) - (y[k - 2] - y[k]) * (px - x[k]) for k in range(3)]
-                if min(abs(side) for side in sides) > 0.1:  # far enough from an edge for snapping not to matter
-                    self.assertEqual(bool(target.touched[pixel]), all(s > 0 for s in sides) or all(s < 0 for s in sides))
-
-    def test_the_nearer_triangle_owns_the_pixel_in_any_order(self):
-        near, far = self.QUAD.copy(), self.QUAD.copy()
-        near[:, 2], far[:, 2] = -0.5, 0.5
-        for order in ((near, far), (far, near)):
-            target = self.draw(order[0], self.TWO)
-            self.draw(order[1], self.TWO, target=target, first=2)
-            owner = 0 if order[0] is near else 2
-            self.assertTrue(((target.owner == owner) | (target.owner == owner + 1)).all())
-            np.testing.assert_allclose(target.depth, 0.25)
-
-    def test_layers_within_one_draw_are_drawn_in_order(self):
-        clip = np.concatenate([self.QUAD, self.QUAD])
-        triangles = np.concatenate([self.TWO, self.TWO + 4])
-        self.assertLess(self.draw(clip, triangles).owner.max(), 2)
-        self.assertGreater(self.draw(clip, triangles, {"depth_function": "less_equal"}).owner.min(), 1)
-
-    def test_what_blends_on_top_leaves_the_solid_owner(self):
-        target = self.draw(self.QUAD, self.TWO)
-        mix = {"source": "source_alpha", "destination": "one_minus_source_alpha", "operation": "add"}
-        self.draw(self.QUAD, self.TWO, {"depth_test": False, "blend": mix}, target=target, first=2)
-        self.assertTrue((target.owner >= 2).all())
-        self.assertTrue((target.solid < 2).all() and (target.solid >= 0).all())
-
-    def test_culling_looks_at_the_picture(self):
-        self.assertTrue(self.draw(self.QUAD, self.TWO, cull="back").touched.all())
-        self.assertFalse(self.draw(self.QUAD, self.TWO, cull="front").touched.any())
-        self.assertFalse(self.draw(self.QUAD, self.TWO, {"front_face": "clockwise"}, "back").touched.any())
-        upside_down = {"viewport": [0, 6, 8, -6]}
-        self.assertFalse(self.draw(self.QUAD, self.TWO, upside_down, "back").touched.any())
-
-    def test_scissor_viewport_and_range(self):
-        found = self.draw(self.QUAD, self.TWO, {"viewport": [2, 0, 4, 6], "scissor": [0, 1, 8, 2],
-                                                "depth_range": [0.5, 0.7]})
-        self.assertEqual(np.flatnonzero(found.touched).tolist(), [10, 11, 12, 13, 18, 19, 20, 21])
-        np.testing.assert_allclose(found.depth[found.touched], 0.6)
-
-    def test_a_triangle_that_passes_the_eye_is_cut_at_the_near_plane(self):
-        clip = np.array([[-1, -1, 0, 1], [1, -1, 0, 1], [0, 3, -4, -2]], np.float32)
-        target = self.draw(clip, np.array([[0, 1, 2]]))
-        self.assertTrue(target.touched.any())
-        self.assertGreaterEqual(target.depth.min(), 0)
-
-    def test_a_slope_bias_moves_a_slope(self):
-        clip = self.QUAD.copy()
-        clip[:, 2] = clip[:, 0] * 0.5
-        plain = self.draw(clip, self.TWO).depth
-        moved = self.draw(clip, self.TWO, {"depth_bias": {"constant": 0.01, "slope": 2.0, "clamp": 0}}).depth
-        np.testing.assert_allclose(moved - plain, 0.01 + 2 * 0.5 / 8, atol=1e-9)  # z changes by 0.5 over 8 pixels
-
-    def test_stencil_keeps_later_draws_out(self):
-        target = self.draw(self.QUAD, self.TWO[:1], {
-            "depth_test": False, "depth_write": False, "color_mask": "",
-            "stencil": {"function": "always", "reference": 1, "mask": 255, "write_mask": 255, "fail": "keep",
-                        "depth_fail": "keep", "pass": "replace"}})
-        marked = target.stencil == 1
-        self.assertTrue(0 < marked.sum() < 48)
-        self.draw(self.QUAD, self.TWO, {"stencil": {"function": "equal", "reference": 1, "mask": 255, "write_mask": 255,
-                                                    "fail": "keep", "depth_fail": "keep", "pass": "keep"}},
-                  target=target)
-        np.testing.assert_array_equal(target.owner >= 0, marked)
-
-    def test_weights_are_perspective_correct(self):
-        clip = np.array([[-1, -1, 0, 1], [3, -3, 0, 3], [-2, 2, 0, 2]], np.float32)
-        point = np.array([[0.2, 0.3, 0.5]]) @ clip  # a point of the triangle, in clip space
-        x, y = 100 * (1 + point[0, 0] / point[0, 3]) / 2, 50 * (1 - point[0, 1] / point[0, 3]) / 2
-        found = raster.weights_at(clip, np.array([[0, 1, 2]]), np.array([0]), np.array([x]), np.array([y]),
-                                  [0, 0, 100, 50])
-        np.testing.assert_allclose(found, [[0.2, 0.3, 0.5]], atol=1e-12)
-
-
 class Colors(unittest.TestCase):
     def test_srgb_there_and_back(self):
         values = np.linspace(0, 1, 256)
         np.testing.assert_allclose(srgb.from_linear(srgb.to_linear(values)), values, atol=1e-7)
         self.assertAlmostEqual(float(srgb.to_linear(np.array(0.5))), 0.21404114)
 
-    def test_the_cutoff_is_between_what_is_kept_and_what_is_gone(self):
-        alpha = np.array([0.1, 0.2, 0.25, 0.8, 0.9])
-        self.assertEqual(shading.best_cutoff(alpha, alpha > 0.22), (0.225, 0.0))
-        self.assertEqual(shading.best_cutoff(alpha, alpha > 0.3), (0.5, 0.0))
+class Images(unittest.TestCase):
+    @staticmethod
+    def format(name, kind="Regular", component_bytes=1, components=4, numbers="UNorm", bgra=False):
+        return images.Format(name, kind, component_bytes, components, numbers, bgra)
 
-    def test_the_cutoff_bears_a_few_wrong_fragments(self):
-        alpha = np.linspace(0, 1, 101)
-        kept = alpha > 0.705
-        kept[10] = True
-        cutoff, wrong = shading.best_cutoff(alpha, kept)
-        self.assertAlmostEqual(cutoff, 0.705)
-        self.assertAlmostEqual(wrong, 1 / 101)
-
-    def test_light_at_vertices_is_found_through_a_texture(self):
-        random = np.random.default_rng(11)
-        weights, texel = random.dirichlet([1, 1, 1], 2000), random.uniform(0.2, 1, (2000, 3))
-        corners = np.array([[0, 1, 2], [2, 1, 3]])[random.integers(0, 2, 2000)]
-        light = np.array([[1, 0, 0], [0, 1, 0.5], [0.2, 0.3, 1], [0.9, 0.9, 0]])
-        captured = texel * (weights[..., None] * light[corners]).sum(1)
-        found, seen = shading._least_squares(texel, weights, corners, captured, 5)
-        self.assertEqual(seen.tolist(), [True] * 4 + [False])
-        np.testing.assert_allclose(found[:4], light, atol=0.01)
-
-
-class Pixels(unittest.TestCase):
     def test_bgra_bytes(self):
-        found = pixels.decode_color(bytes([255, 0, 51, 255]), 1, 1, pixels.Format("Regular", 1, 4, "UNorm", True))
+        found = images.decode_color(bytes([255, 0, 51, 255]), 1, 1, self.format("B8G8R8A8_UNORM", bgra=True))
         np.testing.assert_allclose(found[0, 0], [0.2, 0, 1, 1], atol=1e-6)
 
-    def test_one_channel_is_red(self):
-        found = pixels.decode_color(bytes([51]), 1, 1, pixels.Format("Regular", 1, 1, "UNorm", False))
-        np.testing.assert_allclose(pixels.swizzled(found, "rrr1")[0, 0], [0.2, 0.2, 0.2, 1], atol=1e-6)
+    def test_what_a_trace_knows_is_stored_as_it_is(self):
+        data = bytes(range(8))
+        self.assertEqual(images.stored(data, 2, 1, self.format("B8G8R8A8_SRGB", bgra=True)), ("B8G8R8A8_SRGB", data))
+        half = self.format("R16G16B16A16_FLOAT", component_bytes=2, numbers="Float")
+        self.assertEqual(images.stored(data, 1, 1, half), ("R16G16B16A16_SFLOAT", data))
+
+    def numbers(self, data, format, kind="<f4"):
+        name, texels = images.stored(data, len(data) // images.size_in_bytes(1, 1, format), 1, format)
+        return name, np.frombuffer(texels, kind).reshape(-1, 4)
+
+    def test_other_formats_keep_their_numbers(self):
+        for format, data, wanted in (
+                (self.format("R16_UNORM", component_bytes=2, components=1), struct.pack("<H", 65535), [1, 0, 0, 1]),
+                (self.format("R8G8_SNORM", components=2, numbers="SNorm"), struct.pack("bb", -128, 127), [-1, 1, 0, 1]),
+                (self.format("R10G10B10A2_UNORM", "R10G10B10A2"), struct.pack("<I", 1023 << 10 | 2 << 30),
+                 [0, 1, 0, 2 / 3]),
+                (self.format("R5G6B5_UNORM", "R5G6B5"), struct.pack("<H", 31 << 11), [0, 0, 1, 1]),
+                # 1.5 = 1.1b; in 6 bits of mantissa 0x20, in 5 bits 0x10; an exponent of 15 is 2^0
+                (self.format("R11G11B10_FLOAT", "R11G11B10"),
+                 struct.pack("<I", (15 << 6 | 0x20) | (16 << 6) << 11 | (14 << 5 | 0x10) << 22), [1.5, 2, 0.75, 1]),
+                # 256 / 512 * 2^(exponent - 15)
+                (self.format("R9G9B9E5_FLOAT", "R9G9B9E5"), struct.pack("<I", 256 | 128 << 9 | 16 << 27),
+                 [1, 0.5, 0, 1])):
+            name, found = self.numbers(data, format)
+            self.assertEqual(name, "R32G32B32A32_SFLOAT")
+            np.testing.assert_allclose(found[0], wanted, atol=1e-6, err_msg=format.name)
+
+    def test_integers_stay_integers(self):
+        name, found = self.numbers(struct.pack("<hh", -3, 7), self.format("R16G16_SINT", "Regular", 2, 2, "SInt"), "<i4")
+        self.assertEqual((name, found.tolist()), ("R32G32B32A32_SINT", [[-3, 7, 0, 1]]))
 
     def test_a_bc1_block_with_two_ends(self):
+        if importlib.util.find_spec("PIL") is None:
+            self.skipTest("python3-pil is not installed")
         block = struct.pack("<HHI", 0xF800, 0x001F, 0b00_00_00_00_10_01_00_00)  # red > blue: four colours
-        found = pixels.decode_color(block, 4, 4, pixels.Format("BC1", 0, 4, "UNorm", False))
-        for x, color in ((0, [1, 0, 0, 1]), (2, [0, 0, 1, 1]), (3, [2 / 3, 0, 1 / 3, 1])):
-            np.testing.assert_allclose(found[0, x], color, atol=0.005)
+        name, texels = images.stored(block, 4, 4, self.format("BC1_SRGB", "BC1", numbers="UNormSRGB"))
+        self.assertEqual(name, "R8G8B8A8_SRGB")
+        found = np.frombuffer(texels, "u1").reshape(4, 4, 4)
+        for x, color in ((0, [255, 0, 0, 255]), (2, [0, 0, 255, 255]), (3, [170, 0, 85, 255])):
+            np.testing.assert_allclose(found[0, x], color, atol=1)
 
-    def test_a_bc3_block_has_opacity_and_with_rising_ends_0_and_1(self):
-        for ends, codes, expected in (([200, 100], 1 | 2 << 3, [100, 185, 200]),
-                                      ([100, 200], 6 | 7 << 3 | 2 << 6, [0, 255, 120])):
-            block = bytes(ends) + codes.to_bytes(6, "little") + struct.pack("<HHI", 0xFFFF, 0, 0)
-            found = pixels.decode_color(block, 4, 4, pixels.Format("BC3", 0, 4, "UNorm", False))
-            np.testing.assert_allclose(found[0, :3, 3] * 255, expected, atol=1)
+    def test_depth_has_24_bits_below_stencil(self):
+        format = self.format("D24S8", "D24S8", 4, 2, "Depth")
+        name, texels = images.stored(struct.pack("<I", 7 << 24 | 0xFFFFFF), 1, 1, format)
+        self.assertEqual((name, texels), ("D32_SFLOAT", struct.pack("<f", 1)))
 
-    def test_24_bits_of_depth_are_where_the_api_keeps_them(self):
-        for word, low in ((0xFFFFFF << 8 | 7, False), (7 << 24 | 0xFFFFFF, True)):
-            depth = pixels.Format("D24S8", 0, 2, "Depth", False)
-            self.assertEqual(pixels.decode_depth(struct.pack("<I", word), 1, 1, depth, low)[0, 0], 1)
+    def test_an_unknown_format_is_none(self):
+        self.assertIsNone(images.stored(bytes(16), 4, 4, self.format("ASTC_4x4", "ASTC")))
+
+
+class Interpolations(unittest.TestCase):
+    def module(self, *instructions):
+        words = [0x07230203, 0x10300, 0, 100, 0]
+        for code, *operands in instructions:
+            words += [(1 + len(operands)) << 16 | code, *operands]
+        return struct.pack(f"<{len(words)}I", *words)
+
+    def test_decorations_of_inputs(self):
+        decorate, variable, location, flat, linear = 71, 59, 30, 14, 13
+        module = self.module((decorate, 9, location, 4), (decorate, 8, location, 0), (decorate, 8, flat),
+                             (decorate, 7, location, 1), (decorate, 7, linear), (decorate, 6, location, 2),
+                             (decorate, 6, flat), (variable, 1, 9, 1), (variable, 1, 8, 1), (variable, 1, 7, 1),
+                             (variable, 1, 6, 3))  # the last one is an output
+        found = spirv.interpolations(module)
+        self.assertEqual(found, [(0, "flat"), (1, "linear"), (4, "smooth")])
+        self.assertEqual([spirv.interpolation_at(found, place) for place in (0, 1, 3, 4, 5)],
+                         ["flat", "linear", "linear", "smooth", "smooth"])
+
+    def test_members_of_a_block(self):
+        module = self.module((72, 5, 0, 30, 3), (72, 5, 1, 30, 6), (72, 5, 1, 14), (59, 1, 9, 1))
+        self.assertEqual(spirv.interpolations(module), [(3, "smooth"), (6, "flat")])
 
 
 class Files(unittest.TestCase):
@@ -458,81 +379,67 @@ class Files(unittest.TestCase):
 
 
 class Meshes(unittest.TestCase):
+    SAMPLER = {"mag": "linear"}
+
     class FakeDraw:
-        def __init__(self, clip):
+        def __init__(self, clip, varyings=((1,), (2,), (3,), (4,))):
             self.clip, self.triangles = clip.astype(np.float32), np.array([[0, 1, 2], [2, 1, 3]])
-            self.topology, self.look, self.alpha_test, self.attributes = "TriangleList", None, None, {}
-            self.cull, self.state, self.first, self.blends, self.is_ground = "none", {}, 0, False, False
+            self.varyings = np.array(varyings, np.uint32)
+            self.cull, self.state = "none", {}
+            self.program = {"spirv": bytes(24), "specialization": [], "inputs": [{"location": 0, "count": 1}],
+                            "buffers": [{"set": 0, "binding": 1, "element": 0, "bytes": b"abc"}],
+                            "push_constants": b"",
+                            "images": [{"set": 2, "binding": 0, "element": 0, "image": "first", "shape": "2d",
+                                        "array": False, "sampler": Meshes.SAMPLER}]}
 
     class FakeFrame:
         def __init__(self, *draws):
             self.draws = draws
 
-    COLORS = (np.full((2, 3), 4.0), np.array([8, 0]), np.full((2, 3), 0.25))
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = holder.name
+        for name in ("first", "second"):  # the same texels, as a program may have them twice
+            with open(os.path.join(self.folder, name + ".pickle"), "wb") as file:
+                pickle.dump({"format": "R8_UNORM", "texels": b"x", "width": 1, "height": 1, "depth": 1, "layers": 1,
+                             "levels": 1}, file)
+        self.collection = meshes.Collection()
 
-    def test_a_mesh_that_moves_is_stored_once_with_the_mean_of_its_colors(self):
-        old = np.random.default_rng(8).normal(size=(4, 4))
-        collection = meshes.Collection(None)
-        first = collection.add_frame(self.FakeFrame(self.FakeDraw(old)), self.COLORS)
-        moved = self.FakeDraw((self.FakeDraw(old).clip.astype(np.float64) @ Matrices.MATRIX.T))
-        second = collection.add_frame(self.FakeFrame(moved), (np.full((2, 3), 8.0), np.array([8, 0]), np.ones((2, 3))))
-        self.assertEqual(len(collection.meshes), 1)
+    def add(self, *draws):
+        return self.collection.add_frame(self.FakeFrame(*draws), self.folder)
+
+    def test_a_mesh_that_moves_is_stored_once(self):
+        old = self.FakeDraw(np.random.default_rng(8).normal(size=(4, 4)))
+        first = self.add(old)
+        second = self.add(self.FakeDraw(old.clip.astype(np.float64) @ Matrices.MATRIX.T))
+        self.assertEqual(len(self.collection.meshes), 1)
         self.assertNotIn("transform", first[0])
         matrix = np.array(second[0]["transform"]).reshape(4, 4).T  # column-major
         np.testing.assert_allclose(matrix, Matrices.MATRIX, atol=1e-4)
-        colors = collection.meshes[0].welded()[4]
-        np.testing.assert_allclose(colors, [[0.75] * 3, [0.25] * 3])
 
-    def test_two_draws_of_a_frame_have_a_mesh_each(self):
+    def test_other_varyings_are_another_mesh(self):
         clip = np.random.default_rng(9).normal(size=(4, 4))
-        collection = meshes.Collection(None)
-        draws = collection.add_frame(self.FakeFrame(self.FakeDraw(clip), self.FakeDraw(clip)), self.COLORS)
-        self.assertNotEqual(draws[0]["mesh"], draws[1]["mesh"])
+        draws = self.add(self.FakeDraw(clip), self.FakeDraw(clip, ((1,), (2,), (3,), (5,))), self.FakeDraw(clip))
+        self.assertEqual([draw["mesh"] for draw in draws], ["mesh0", "mesh1", "mesh0"])
 
+    def test_programs_images_and_samplers_are_stored_once(self):
+        clip = np.random.default_rng(10).normal(size=(4, 4))
+        one, two = self.FakeDraw(clip), self.FakeDraw(clip)
+        two.program["images"][0]["image"] = "second"
+        draws = self.add(one, two)
+        self.assertEqual(draws[0]["program"], {
+            "program": 0, "buffers": [{"set": 0, "binding": 1, "element": 0, "bytes": "YWJj"}],
+            "images": [{"set": 2, "binding": 0, "element": 0, "image": 0, "sampler": 0}]})
+        self.assertEqual(draws[1]["program"], draws[0]["program"])
+        self.assertEqual([len(table.entries) for table in (self.collection.programs, self.collection.images,
+                                                           self.collection.samplers)], [1, 1, 1])
 
-class Grounds(unittest.TestCase):
-    """A ground that writes depth alone, and layers on it."""
-    ADD = {"source": "source_alpha", "destination": "one", "operation": "add"}
-    MIX = {"source": "source_alpha", "destination": "one_minus_source_alpha", "operation": "add"}
-
-    def frame_of(self, *states):
-        """A frame of 8 x 6 pixels that is covered once by each draw, and its target."""
-        holder = frame.Frame.__new__(frame.Frame)
-        holder.width, holder.height, holder.samples, holder.levels, holder.depth_before = 8, 6, 1, None, None
-        holder.color = np.full((6, 8, 3), 0.5)
-        holder.draws = []
-        for state_of_draw in states:
-            draw = frame.Draw.__new__(frame.Draw)
-            draw.clip, draw.triangles, draw.state, draw.cull = Rasters.QUAD, Rasters.TWO, state_of_draw, "none"
-            draw.first, draw.alpha_test, draw.look, draw.attributes = 2 * len(holder.draws), None, None, {}
-            draw.topology, draw.is_ground = "TriangleList", False
-            holder.draws.append(draw)
-        holder.triangles = 2 * len(states)
-        target = holder.rasterize(None)
-        shading.find_grounds(holder, target)
-        return holder, target
-
-    def layers(self, blend):
-        return ({"color_mask": ""}, {"depth_write": False, "depth_function": "less_equal", "blend": blend})
-
-    def test_a_ground_gets_the_colours_that_are_added_on_it(self):
-        found, target = self.frame_of(*self.layers(self.ADD))
-        self.assertEqual([draw.is_ground for draw in found.draws], [True, False])
-        sums, count, _ = shading.picture_colors(found, target)
-        self.assertEqual(count[:2].sum(), 48)
-        np.testing.assert_allclose(sums[:2] / count[:2, None], srgb.to_linear(np.full((2, 3), 0.5)))
-        first = meshes.Collection(None).add_frame(found, (sums, count, sums))[0]
-        self.assertNotIn("color_mask", first.get("state", {}))
-
-    def test_depth_below_usual_draws_stays_without_colour(self):
-        for layers in (self.layers(self.MIX), ({"color_mask": ""}, {"depth_function": "less_equal"}),
-                       ({"color_mask": ""},)):
-            found, _ = self.frame_of(*layers)
-            self.assertFalse(any(draw.is_ground for draw in found.draws), layers)
-
-    def test_a_ground_that_is_hidden_is_none(self):
-        found, _ = self.frame_of(*self.layers(self.ADD), {"depth_function": "always"})
-        self.assertFalse(any(draw.is_ground for draw in found.draws))
+    def test_vertices_that_differ_in_a_varying_stay_apart(self):
+        self.add(self.FakeDraw(np.ones((4, 4)) * [[1], [2], [2], [3]]))
+        positions, varyings, indices = self.collection.meshes[0].welded()
+        self.assertEqual((len(positions), varyings.tolist()), (4, [[1], [2], [3], [4]]))
+        self.assertEqual(indices.tolist(), [[0, 1, 2], [2, 1, 3]])
 
 
 if __name__ == "__main__":

@@ -88,7 +88,7 @@ TEST_F(ArrayReaderTest, SaysWhereAndWhatIsWrong) {
        {"/meshes/a/positions/count", "1e300", ends + std::string("1e+300")},
        {"/meshes/a/positions/type", R"("uint32")", R"(expected "float32", found "uint32")"},
        {"/meshes/a/positions/type", R"("int8")",
-        R"(expected one of "float32", "uint32", "uint16", "srgb8", found "int8")"},
+        R"(expected one of "float32", "uint32", "uint16", "uint8", "srgb8", found "int8")"},
        {"/meshes/a/indices/type", R"("float32")", R"(expected "uint32" or "uint16", found "float32")"},
        {"/meshes/a/colors/type", R"("uint16")", R"(expected "float32" or "srgb8", found "uint16")"},
        {"/meshes/a/positions/stride", "12",

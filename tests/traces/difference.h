@@ -19,19 +19,30 @@ inline auto fields(const Material& m) {
 }
 inline auto fields(const Mesh& m) {
   return std::tie(m.name, m.positions, m.ws, m.triangles, m.colors, m.materials, m.normals, m.tangents, m.uvs[0],
-                  m.uvs[1], m.vertex_colors);
+                  m.uvs[1], m.vertex_colors, m.varyings);
 }
 inline auto fields(const Draw& d) {
-  return std::tie(d.mesh, d.transform, d.kd, d.cull, d.shading, d.material, d.state);
+  return std::tie(d.mesh, d.transform, d.kd, d.cull, d.shading, d.material, d.state, d.program);
 }
 inline auto fields(const Camera& c) { return std::tie(c.eye, c.target, c.up, c.fovy_deg, c.near, c.far); }
 inline auto fields(const Light& l) { return std::tie(l.direction, l.color); }
 inline auto fields(const Ambient& a) { return std::tie(a.sky, a.ground, a.up); }
 inline auto fields(const Frame& f) {
   return std::tie(f.width, f.height, f.background, f.camera, f.view, f.projection, f.lighting.lights,
-                  f.lighting.ambient, f.draws, f.capture);
+                  f.lighting.ambient, f.draws, f.target, f.capture);
 }
-inline auto fields(const Trace& t) { return std::tie(t.source, t.images, t.materials, t.meshes, t.frames); }
+inline auto fields(const ShaderProgram& p) { return std::tie(p.name, p.spirv, p.specialization, p.inputs); }
+inline auto fields(const ProgramImage& i) {
+  return std::tie(i.name, i.shape, i.format, i.width, i.height, i.depth, i.layers, i.array, i.levels, i.texels);
+}
+inline auto fields(const ProgramSampler& s) {
+  return std::tie(s.mag, s.min, s.mip, s.wrap, s.lod_bias, s.least_lod, s.most_lod, s.anisotropy, s.compare, s.border,
+                  s.unnormalized);
+}
+inline auto fields(const Trace& t) {
+  return std::tie(t.source, t.images, t.program_images, t.program_samplers, t.programs, t.materials, t.meshes,
+                  t.frames);
+}
 
 // Where two traces, or two of their parts, differ first: "" if every number has the same bits.
 template <class T>

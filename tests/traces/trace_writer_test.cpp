@@ -186,7 +186,12 @@ DrawState random_state(std::mt19937& random) {
   if (chance()) state.depth.bias = {number(), chance() ? number() : 0.0f, number()};
   state.depth.cleared_before = chance();
   state.front_is_clockwise = chance();
-  if (chance()) state.blend = {BlendFactor(below(12)), BlendFactor(below(12)), BlendOperation(below(5))};
+  const auto equation = [&] {
+    return BlendEquation{BlendFactor(below(15)), BlendFactor(below(15)), BlendOperation(below(5))};
+  };
+  if (chance()) state.blend = Blend{.color = equation()};
+  if (state.blend && chance()) state.blend->alpha = equation();
+  if (state.blend && chance()) state.blend->constant = {0.5f, 0, 1, std::abs(number())};
   if (chance()) state.color_mask = below(16);
   if (chance()) state.stencil = {compare(), below(256), below(256), below(256), operation(), operation(), operation()};
   return state;
@@ -217,6 +222,83 @@ Trace random_capture(unsigned seed) {
   if (random() % 2 == 0) frame.capture.pictures.color = static_cast<std::uint32_t>(trace.images.size() - 1);
   if (random() % 2 == 0) frame.capture.pictures.depth = {0, 0.25f, 0.5f, 0.1f, 1, 1};
   if (random() % 2 == 0) frame.capture.pictures.clear_depth = 0;
+  if (random() % 2 == 0) frame.capture.pictures.samples = 4;
+  return trace;
+}
+
+// A frame as it is captured, with the program's own shaders.
+Trace random_programs(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto chance = [&] { return random() % 2 == 0; };
+  const auto below = [&](std::size_t count) { return static_cast<std::uint32_t>(random() % count); };
+  const auto word = [&] { return static_cast<std::uint32_t>(random()); };
+  const auto number = [&] { return static_cast<float>(random() % 2001) / 1000 - 1; };
+  const auto bytes = [&](std::size_t count) {
+    std::vector<std::uint8_t> result(count);
+    for (std::uint8_t& byte : result) byte = static_cast<std::uint8_t>(random());
+    return result;
+  };
+  Trace trace = random_capture(seed);
+  for (std::uint32_t i = 0; i < 15; ++i) {  // every format
+    ProgramImage image{.name = "image", .shape = ImageShape(below(4)), .format = TexelFormat(i), .texels = {}};
+    image.width = 1 + below(5);
+    image.array = image.shape != ImageShape::d3 && chance();
+    const bool is_cube = image.shape == ImageShape::cube;
+    image.height = is_cube ? image.width : image.shape == ImageShape::d1 ? 1 : 1 + below(5);
+    image.depth = image.shape == ImageShape::d3 ? 1 + below(3) : 1;
+    image.layers = (image.array ? 1 + below(3) : 1) * (is_cube ? 6 : 1);
+    image.levels = image.width > 1 && chance() ? 2 : 1;
+    image.texels = bytes(level_start(image, image.levels));
+    trace.program_images.push_back(image);
+  }
+  for (int i = 0; i < 4; ++i) {
+    ProgramSampler sampler;
+    sampler.mag = Filter(below(2)), sampler.min = Filter(below(2)), sampler.mip = Filter(below(2));
+    for (SamplerWrap& wrap : sampler.wrap) wrap = SamplerWrap(below(5));
+    if (chance()) sampler.lod_bias = number(), sampler.least_lod = number(), sampler.most_lod = number();
+    if (chance()) sampler.anisotropy = 1 + static_cast<float>(below(16));
+    if (chance()) sampler.compare = Compare(below(8));
+    if (chance()) sampler.border = {number(), 0.0f, number(), -0.0f};
+    sampler.unnormalized = chance();
+    trace.program_samplers.push_back(sampler);
+  }
+  // Programs of the same inputs, which all meshes have.
+  std::vector<ProgramInput> inputs;
+  for (std::uint32_t i = 0; i < below(4); ++i)
+    inputs.push_back({.location = i,
+                      .component = below(2),
+                      .count = 1 + below(3),
+                      .interpolation = InputInterpolation(below(3)),
+                      .integer = chance()});
+  for (std::size_t i = 0; i < 2; ++i) {
+    ShaderProgram program{.name = "program " + std::to_string(i), .spirv = {}, .specialization = {}, .inputs = inputs};
+    for (std::size_t k = 0; k < below(9); ++k) program.spirv.push_back(word());
+    if (chance()) program.specialization = {{.id = word(), .bits = word()}, {.id = 0, .bits = ~0u}};
+    trace.programs.push_back(program);
+  }
+  const bool are_numbers = chance();
+  for (Mesh& mesh : trace.meshes)
+    for (std::size_t i = 0; i < varyings_of(trace.programs[0]) * mesh.positions.size(); ++i)
+      mesh.varyings.push_back(are_numbers ? std::bit_cast<std::uint32_t>(number()) : word());
+  Frame& frame = trace.frames[0];
+  frame.target = ColorTarget(below(2));
+  for (Draw& draw : frame.draws) {
+    if (draw.kd || draw.material) continue;
+    ProgramUse& use = draw.program.emplace();
+    use.program = below(2);
+    if (chance()) use.push_constants = bytes(below(9));
+    for (std::uint32_t i = 0; i < below(3); ++i)
+      use.buffers.push_back({.set = below(2), .binding = i, .element = below(2), .bytes = bytes(below(9))});
+    for (std::uint32_t i = 0; i < below(3); ++i) {
+      BoundImage image{.set = below(2), .binding = i, .element = below(2)};
+      if (chance()) image.image = below(15);
+      if (!image.image || chance()) image.sampler = below(4);
+      if (chance()) image.swizzle = "b0a1";
+      if (image.image && chance()) image.levels = image.layers = 1;
+      if (image.image) image.base_level = trace.program_images[*image.image].levels - 1;
+      use.images.push_back(image);
+    }
+  }
   return trace;
 }
 
@@ -286,6 +368,20 @@ TEST_F(TraceWriterTest, ReadsBackTheSameCaptures) {
   }
 }
 
+TEST_F(TraceWriterTest, ReadsBackTheSamePrograms) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const Trace trace = random_programs(seed);
+    for (const ArrayStorage storage : {ArrayStorage::text, ArrayStorage::binary}) {
+      write_trace(trace, path("trace.json"), storage);
+      const Trace back = read_trace(path("trace.json"));
+      EXPECT_EQ(difference(trace, back), "");
+      write_trace(back, path("again.json"), ArrayStorage::text);
+      EXPECT_EQ(difference(trace, read_trace(path("again.json"))), "");
+    }
+    ASSERT_FALSE(HasFailure()) << "seed " << seed;
+  }
+}
+
 TEST_F(TraceWriterTest, BinaryArraysTakeFewBytes) {
   Trace trace = small_trace([](Trace& t) {
     t.meshes[0].positions.resize(1000);
@@ -344,6 +440,10 @@ TEST_F(TraceWriterTest, WritesVersion2WhereAnythingNeedsIt) {
       [](Trace& trace) { trace.frames[0].lighting.ambient.emplace(); },
       [](Trace& trace) { trace.meshes[0].ws = {2}; },
       [](Trace& trace) { trace.frames[0].draws[0].state.depth.test = false; },
+      [](Trace& trace) { trace.frames[0].target = ColorTarget::unorm; },
+      [](Trace& trace) { trace.meshes[0].varyings = {1}; },
+      [](Trace& trace) { trace.programs.resize(1), trace.frames[0].draws[0].program.emplace(); },
+      [](Trace& trace) { trace.program_samplers.resize(1); },
       [](Trace& trace) { trace.frames[0].capture.left_out.resize(1); },
       [](Trace& trace) { trace.source.emplace(); },
   };
@@ -411,6 +511,21 @@ TEST_F(TraceWriterTest, RefusesWhatNoReaderWouldTake) {
          trace.frames[0].draws[0].kd = {1, 1, 1};
        },
        "a draw has both kd and a material"},
+      {[](Trace& trace) { trace.frames[0].draws[0].program.emplace(); }, "a draw names no program"},
+      {[](Trace& trace) {
+         trace.programs.resize(1);
+         trace.frames[0].draws[0].program.emplace();
+         trace.frames[0].draws[0].kd = {1, 1, 1};
+       },
+       "a draw has both a program and kd or a material"},
+      {[](Trace& trace) {
+         trace.programs.resize(1);
+         trace.programs[0].inputs = {{.location = 0, .count = 2}};
+         trace.frames[0].draws[0].program.emplace();
+         trace.meshes[0].varyings = {1};
+       },
+       "mesh \"m\" lacks varyings of a program that draws it"},
+      {[](Trace& trace) { trace.program_images.resize(1); }, "program image \"\" has not the texels of its size"},
       {[](Trace& trace) { trace.meshes[0].ws.resize(2); }, "mesh \"m\" lacks w of some positions"},
       {[](Trace& trace) { trace.frames[0].capture.pictures.color = 0; }, "a captured picture names no image"},
       {[](Trace& trace) { trace.source.emplace().program = "\xff"; }, "the program is not UTF-8"},

@@ -15,8 +15,8 @@ from progress import Progress
 
 DESCRIPTION = "Make a trace from frames of a real program that draws with OpenGL, OpenGL ES or Vulkan."
 EXAMPLES = """What is kept: all triangles of the main pass as they leave the vertex, tessellation or geometry shader,
-with the state of their draws (depth, blending, stencil, viewport, culling), textures where they explain the picture,
-and the program's own picture and depth buffer to compare with. The program's fragment shaders are not run by beampipe.
+with the state of their draws (depth, blending, stencil, viewport, culling), their fragment shaders with all that these
+read, and the program's own picture and depth buffer to compare with. OpenGL becomes Vulkan by Mesa's zink.
 docs/manual.md says how it works and what a trace leaves out.
 
 Examples:
@@ -83,19 +83,19 @@ def parse(words):
 
 
 def launch_of(arguments):
-    """(words to start, ways to record) of what the user named; ([], []) for a capture that is there already."""
+    """The words to start for what the user named; none for a capture that is there already."""
     named = arguments.program[0]
     if not arguments.is_file:
         if shutil.which(named) is None:
             raise Failure(f"{named}: there is no such program")
-        return arguments.program, ["direct", "zink"]
+        return arguments.program
     if not os.path.isfile(named):
         raise Failure(f"{named}: there is no such file")
     if named.endswith(".trace"):  # the last frame of the recording, again and again
-        return ["glretrace", "--loop=1000000", named], ["zink"]
+        return ["glretrace", "--loop=1000000", named]
     if named.endswith(".gfxr"):
-        return ["gfxrecon-replay", "--remove-unsupported", named], ["vulkan"]
-    return [], []
+        return ["gfxrecon-replay", "--remove-unsupported", named]
+    return []
 
 
 def print_passes(pictures):
@@ -108,14 +108,12 @@ def print_passes(pictures):
         print("  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip())
 
 
-def source_of(arguments, recording, pictures, shading_line):
+def source_of(arguments, recording, pictures):
     import renderdoc
-    api = pictures[0]["api"]
-    if recording and recording.way == "zink":
-        api = "OpenGL (zink)"
-    source = {"program": os.path.basename(arguments.program[0]), "api": api, "driver": pictures[0]["driver"],
+    source = {"program": os.path.basename(arguments.program[0]), "api": pictures["api"], "driver": pictures["driver"],
               "date": datetime.date.today().isoformat(), "tool": f"RenderDoc {renderdoc.GetVersionString()}",
-              "shading": shading_line}
+              "shading": "the program's fragment shaders; pictures are of a replay with GALLIVM_PERF="
+                         + pictures["filtering"]}
     if recording and recording.frame is not None:
         source["frame"] = recording.frame
     return source
@@ -125,46 +123,39 @@ def make_trace(arguments, recording, extracted, folder, progress):
     """Writes the trace; prints what is in it."""
     import frame as frames_module
     import meshes
-    import shading
-    import textures
     import trace_file
-    collection = meshes.Collection(textures.TextureFolder(folder))
-    frames, draws, agreements, lines = [], [], [], []
+    collection = meshes.Collection()
+    frames, draws = [], []
     for number, (pictures, found) in enumerate(extracted):
-        progress.show(f"colours of frame {number + 1} of {len(extracted)}")
+        progress.show(f"frame {number + 1} of {len(extracted)}")
         frame = frames_module.Frame(pictures, found)
         if not frame.draws:
             reasons = ", ".join(f"{count} draws: {reason}" for reason, (count, _) in frame.left_out.items())
             raise Failure(f"the pass has no triangles ({reasons or 'all are empty'})")
-        collection.textures = textures.TextureFolder(os.path.join(folder, str(number)))
-        target, colors = shading.shade(frame, collection.textures)
-        agreements.append(frames_module.Agreement(frame, target))
-        lines.append(shading.summary(frame, colors[1]))
-        draws.append(collection.add_frame(frame, colors))
+        draws.append(collection.add_frame(frame, os.path.join(folder, str(number))))
         frames.append(frame)
-    size, triangles = trace_file.write_trace(arguments.output, frames, draws, collection,
-                                             source_of(arguments, recording, [e[0] for e in extracted], lines[0]))
+    size = trace_file.write_trace(arguments.output, frames, draws, collection,
+                                  source_of(arguments, recording, extracted[0][0]))
     progress.clear()
     first = frames[0]
     drawn = sum(len(frame.draws) for frame in frames)
     print(f"{arguments.output}: {len(frames)} frame{'s' if len(frames) > 1 else ''}, {first.width} x {first.height} "
           f"pixels, {drawn} draws, {sum(frame.triangles for frame in frames)} triangles, "
-          f"{len(collection.meshes)} meshes, {size / max(1, triangles):.1f} bytes a triangle")
-    print(f"colours: {lines[0]}")
+          f"{len(collection.meshes)} meshes, {len(collection.programs.entries)} fragment shaders, "
+          f"{len(collection.images.entries)} images, {size / 1e6:.1f} MB")
     for reason, (count, primitives) in sorted(first.left_out.items()):
         print(f"left out: {count} draws, {primitives} primitives: {reason}")
-    share = lambda name: min(getattr(agreement, name) for agreement in agreements)
-    if all(agreement.covered is not None for agreement in agreements):
-        depths = (f", depths within 1e-4 at {100 * share('depths'):.2f} %"
-                  if all(agreement.depths is not None for agreement in agreements) else "")
-        print(f"check: the triangles cover {100 * share('covered'):.2f} % of the program's pixels{depths}")
+    for image in sorted(collection.unread):
+        print(f"left out: {image}: no format that a trace has")
+    if first.later_draws:
+        print(f"after this pass the program draws {first.later_draws} times, for instance to filter the picture")
 
 
 def run(arguments):
     progress = Progress()
     start = time.monotonic()
     deadline = start + arguments.timeout
-    words, ways = launch_of(arguments)
+    words = launch_of(arguments)
     if arguments.output:
         folder = os.path.dirname(arguments.output) or "."
         os.makedirs(folder, exist_ok=True)
@@ -181,8 +172,8 @@ def run(arguments):
         recording, captures = None, arguments.program
         if words:
             from record import Wishes, record
-            wishes = Wishes(arguments.after, arguments.frame, arguments.frames, ways == ["zink"])
-            recording = record(processes, words, ways, display, folder, wishes, progress, arguments.timeout)
+            wishes = Wishes(arguments.after, arguments.frame, arguments.frames, words[0] == "glretrace")
+            recording = record(processes, words, display, folder, wishes, progress, arguments.timeout)
             captures = recording.paths
         recorded = time.monotonic()
         extracted = [extract(processes, capture, os.path.join(folder, str(number)), display, arguments.target,
@@ -193,8 +184,7 @@ def run(arguments):
             print_passes(extracted[0][0])
             return
         make_trace(arguments, recording, extracted, folder, progress)
-        way = f" ({recording.way})" if recording else ""
-        print(f"seconds: capture{way} {recorded - start:.1f}, extraction {time.monotonic() - recorded:.1f}")
+        print(f"seconds: capture {recorded - start:.1f}, extraction {time.monotonic() - recorded:.1f}")
 
 
 def main(words):

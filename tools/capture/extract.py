@@ -1,20 +1,19 @@
 """One worker of the extraction: `python3 extract.py JOB`. Reads the draws that are its share out of a capture.
 
 JOB is a JSON file: capture, folder (for results), share and shares (draws number share, share + shares, ...), pictures
-(whether this worker takes the pictures instead), target (a colour target's number or null). Results are pickles, and
-each texture is a .npy file that whichever worker needs it first writes."""
+(whether this worker takes the pictures instead), target (a colour target's number or null). Results are pickles, also
+those of images, each of which whichever worker needs it first writes."""
 import json
 import os
 import pickle
 import sys
 import traceback
 
-import numpy as np
-
 import passes
 import post_vertex
-from api_state import can_discard, read_state, read_textures
-from replay import Replay, ReplayError
+from api_state import read_state
+from programs import Programs
+from replay import FILTERING, Replay, ReplayError
 
 
 def write_pickle(path, value):
@@ -38,26 +37,31 @@ def kept_pass(replay, target):
     return found, max(chosen, key=lambda one: one.vertices)
 
 
-def take_texture(replay, texture, folder):
-    """Leaves a texture's texels in the folder, unless another worker has."""
-    path = os.path.join(folder, f"texture_{texture}.npy")
+def image_key(replay, image, event):
+    """The name of a bound image's texels as they are at an event, and of the file that has them."""
+    version = replay.version(image["texture"], event)
+    return f"image_{image['texture']}_{version}_{image['format'].name}"
+
+
+def take_image(replay, image, key, folder):
+    """Leaves an image's format and texels in the folder, unless another worker has."""
+    path = os.path.join(folder, key + ".pickle")
     try:
         os.close(os.open(path + ".taken", os.O_CREAT | os.O_EXCL))
     except FileExistsError:
         return
-    texels = replay.texture_texels(texture)
-    if texels is not None:
-        np.save(path, np.rint(texels.clip(0, 1) * 255).astype(np.uint8))
+    found = replay.image(image["texture"], image["format"])
+    texture = replay.textures[image["texture"]]
+    write_pickle(path, found and {"format": found[0], "texels": found[1], "width": texture.width,
+                                  "height": texture.height, "depth": texture.depth, "layers": texture.arraysize,
+                                  "levels": texture.mips})
 
 
-def read_draw(replay, action, targets, depth_format, folder):
+def read_draw(replay, programs, action, depth_format, folder):
     """What a draw is, as a dictionary; `left_out` says why it has no geometry."""
-    import renderdoc as rd
     controller = replay.controller
     controller.SetFrameEvent(action.event, False)
-    command = replay.command(action.event)
-    api = read_state(controller, replay.is_vulkan, depth_format)
-    pipe = controller.GetPipelineState()
+    api = read_state(controller, depth_format)
     draw = {"event": action.event, "api": api, "vertices": action.vertices, "left_out": None, "primitives": 0}
     if api["discards_all"]:
         return {**draw, "left_out": "rasterization is off"}
@@ -65,20 +69,19 @@ def read_draw(replay, action, targets, depth_format, folder):
         return {**draw, "left_out": "both faces are culled"}
     if api["fill"] != "Solid":
         return {**draw, "left_out": "triangles drawn as lines or points", "primitives": action.vertices // 3}
+    program = programs.read()
     try:
-        clip, attributes, triangles = post_vertex.read_geometry(replay, command, api["z_from_0"])
+        clip, varyings, triangles = post_vertex.read_geometry(replay, replay.command(action.event), api["z_from_0"],
+                                                              program["inputs"] if program else [])
     except post_vertex.LeftOut as reason:
         return {**draw, "left_out": reason.reason, "primitives": reason.primitives}
-    draw.update(clip=clip, attributes=attributes, triangles=triangles,
-                discards=can_discard(pipe.GetShaderReflection(rd.ShaderStage.Pixel)),
-                shader=int(pipe.GetShader(rd.ShaderStage.Pixel)), textures=[])
-    for texture in read_textures(controller, replay.is_vulkan):
-        # What this frame draws itself, such as a shadow map, is not a texture that a file can hold.
-        if texture["id"] in replay.textures and texture["id"] not in targets:
-            texture["mips"] = texture["mips"] and replay.textures[texture["id"]].mips > 1
-            take_texture(replay, texture["id"], folder)
-            draw["textures"].append(texture)
-    return draw
+    for image in program["images"] if program else []:
+        if "texture" in image:
+            key = image_key(replay, image, action.event)
+            take_image(replay, image, key, folder)
+            del image["texture"], image["format"]
+            image["image"] = key
+    return {**draw, "clip": clip, "varyings": varyings, "triangles": triangles, "program": program}
 
 
 def take_pictures(replay, found, kept):
@@ -88,14 +91,15 @@ def take_pictures(replay, found, kept):
     color, depth = replay.color_picture(kept.color) if kept.color else None, replay.depth_picture(kept.depth)
     replay.controller.SetFrameEvent(last, True)
     size = replay.size_of(kept.color or kept.depth)
+    drawn = [action.event for action in replay.actions() if action.is_draw]
     return {
-        "api": replay.api, "driver": replay.driver, "size": size,
+        "api": replay.api, "driver": replay.driver, "filtering": FILTERING, "size": size,
         "samples": replay.samples_of(kept.color or kept.depth),
         "color_format": replay.format_name(kept.color), "depth_format": replay.format_name(kept.depth),
         "color_before": color, "depth_before": depth,
         "color": replay.color_picture(kept.color) if kept.color else None, "depth": replay.depth_picture(kept.depth),
         "kept": kept.name, "kept_color": kept.color, "cleared_before": sorted(kept.cleared_before),
-        "events": [draw.event for draw in kept.draws],
+        "events": [draw.event for draw in kept.draws], "later_draws": sum(event > last for event in drawn),
         "passes": [{"name": one.name, "color": one.color, "size": replay.size_of(one.color or one.depth),
                     "draws": len(one.draws), "triangles": one.vertices // 3, "kept": one is kept,
                     "reason": "" if one is kept else passes.reason_left_out(one, kept)}
@@ -108,16 +112,15 @@ def main(job_path):
         job = json.load(file)
     result = os.path.splitext(job_path)[0]
     try:
-        replay = Replay(job["capture"], vertices_only=not job["pictures"])
+        replay = Replay(job["capture"], for_draws=not job["pictures"])
         found, kept = kept_pass(replay, job["target"])
         if job["pictures"]:
             value = take_pictures(replay, found, kept)
         else:
-            targets = {one.color for one in found} | {one.depth for one in found}
-            value = []
+            programs, depth_format, value = Programs(replay), replay.format_name(kept.depth), []
             with open(result + ".count", "wb", buffering=0) as count:
                 for action in kept.draws[job["share"]:: job["shares"]]:
-                    value.append(read_draw(replay, action, targets, replay.format_name(kept.depth), job["folder"]))
+                    value.append(read_draw(replay, programs, action, depth_format, job["folder"]))
                     count.write(b".")
         write_pickle(result + ".pickle", value)
         replay.close()

@@ -1,4 +1,5 @@
 """Triangles from what a graphics API draws: lists, strips and fans, vertices shared again, user clip planes.
+The first corner of a triangle is its provoking vertex, which gives it its flat inputs (Vulkan 1.3, section 21.1).
 
 Positions are clip positions, n x 4 float32; triangles are m x 3 indices. Nothing here knows RenderDoc."""
 import numpy as np
@@ -18,12 +19,12 @@ def _list(run):
 
 def _strip(run):
     triangles = np.stack([run[:-2], run[1:-1], run[2:]], 1)
-    triangles[1::2] = triangles[1::2][:, [1, 0, 2]]  # every second triangle of a strip turns the other way
+    triangles[1::2] = triangles[1::2][:, [0, 2, 1]]  # every second triangle of a strip turns the other way
     return triangles
 
 
 def _fan(run):
-    return np.stack([np.full(len(run) - 2, run[0]), run[1:-1], run[2:]], 1)
+    return np.stack([run[1:-1], run[2:], np.full(len(run) - 2, run[0])], 1)
 
 
 def _list_with_neighbours(run):

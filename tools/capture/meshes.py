@@ -1,154 +1,137 @@
-"""The meshes, materials and textures of a trace, gathered from the draws of one or more frames."""
+"""The meshes, programs, images and samplers of a trace, gathered from the draws of one or more frames."""
+import base64
+import hashlib
+import json
+import os
+import pickle
+
 import numpy as np
 
 import geometry
 import motion
-import srgb
 
 
 class Mesh:
-    """One stored mesh. Baked colours are sums over all frames that show it."""
+    """One stored mesh. `varyings`: bits of what the inputs of program number `program` have, n x components."""
 
-    def __init__(self, name, draw, material):
-        self.name, self.material = name, material
-        self.bakes = draw.look is None  # its triangles have colours of their own, from the picture
-        self.clip, self.triangles, self.topology = draw.clip, draw.triangles, draw.topology
-        look = draw.look
-        uv = look.uv if look else draw.alpha_test.uv if draw.alpha_test else None
-        self.uv = np.ascontiguousarray(draw.attributes[uv][:, :2]) if uv else None
-        self.lit = bool(look and look.light is not None)  # its vertices' colours are from the first frame's picture
-        self.vertex_colors = (_color_codes(look.light) if self.lit else
-                              _color_codes(draw.attributes[look.color]) if look and look.color else None)
-        self.sums = np.zeros((len(draw.triangles), 3))
-        self.counts = np.zeros(len(draw.triangles), np.int64)
-        self.middle = np.zeros((len(draw.triangles), 3))
+    def __init__(self, name, draw, program):
+        self.name, self.program = name, program
+        self.clip, self.varyings, self.triangles = draw.clip, draw.varyings, draw.triangles
+
+    @property
+    def key(self):
+        """Meshes with the same key are the same."""
+        digest = hashlib.sha256(repr((self.program, self.clip.shape)).encode())
+        for column in (self.clip, self.varyings, self.triangles):
+            digest.update(np.ascontiguousarray(column))
+        return digest.digest()
 
     def matrix_to(self, other):
         """The matrix that makes this mesh the other one, or None."""
-        same = (self.material == other.material and self.topology == other.topology
-                and self.clip.shape == other.clip.shape and np.array_equal(self.triangles, other.triangles)
-                and _equal(self.uv, other.uv) and self.lit == other.lit
-                and (self.lit or _equal(self.vertex_colors, other.vertex_colors)))
+        same = np.array_equal(self.triangles, other.triangles) and np.array_equal(self.varyings, other.varyings)
         return motion.find_matrix(self.clip, other.clip) if same else None
 
-    def add_colors(self, sums, counts, middle):
-        if not self.counts.any():
-            self.middle = middle
-        self.sums += sums
-        self.counts += counts
-
     def welded(self):
-        """(positions4, uv0 or None, vertex_colors or None, indices, linear colours of triangles or None)."""
-        clip, uv, vertex_colors, triangles, colors = self.clip, self.uv, self.vertex_colors, self.triangles, None
-        if self.bakes:
-            owned = self.counts > 0
-            colors = np.where(owned[:, None], self.sums / np.maximum(1, self.counts)[:, None], self.middle)
-        if self.bakes and self.material:  # a material's colours are its vertices': each triangle gets its own
-            corners = triangles.ravel()
-            clip, uv, triangles = clip[corners], uv[corners], np.arange(len(corners)).reshape(-1, 3)
-            vertex_colors = _color_codes(np.repeat(srgb.from_linear(np.clip(colors, 0, 1)), 3, 0))
-            colors = None
-        columns, indices, kept = geometry.weld([clip] + [c for c in (uv, vertex_colors) if c is not None], triangles)
-        rest = iter(columns[1:])
-        return (columns[0], next(rest) if uv is not None else None, next(rest) if vertex_colors is not None else None,
-                indices, None if colors is None else colors[kept])
+        """(positions4, varyings, indices)."""
+        columns, indices, _ = geometry.weld([self.clip, self.varyings], self.triangles)
+        return *columns, indices
 
 
-def _color_codes(values):
-    """RGBA as 8 bits. The program's colours count as sRGB-encoded, as its picture does."""
-    codes = np.full((len(values), 4), 255, np.uint8)
-    codes[:, : values.shape[1]] = np.rint(np.clip(values[:, :4], 0, 1) * 255)
-    return codes
+class Table:
+    """Numbers entries, equal ones once."""
+
+    def __init__(self):
+        self.entries, self._numbers = [], {}
+
+    def number(self, key, make):
+        """That of the entry with this key; make() makes it when it is new."""
+        if key not in self._numbers:
+            self._numbers[key] = len(self.entries)
+            self.entries.append(make())
+        return self._numbers[key]
 
 
-def _equal(a, b):
-    return (a is None and b is None) or (a is not None and b is not None and np.array_equal(a, b))
+def _base64(data):
+    return base64.b64encode(data).decode()
 
 
 class Collection:
-    """Gathers frames. `meshes`, `materials` (by name) and `images` (name -> RGB or RGBA texels) are the result."""
+    """Gathers frames. `meshes`, `programs`, `images` and `samplers` are the result."""
 
-    def __init__(self, textures):
-        self.textures = textures
-        self.meshes, self.materials, self.images = [], {}, {}
-        self._by_size, self._material_names = {}, {}
+    def __init__(self):
+        self.meshes = []
+        self.programs, self.images, self.samplers = Table(), Table(), Table()
+        self.unread = set()  # formats of images that could not be read
+        self._by_key, self._by_size = {}, {}
 
-    def add_frame(self, frame, colors):
-        """The frame's draws as a trace has them; `colors`: shading.picture_colors()."""
-        draws, taken = [], set()
+    def add_frame(self, frame, folder):
+        """The frame's draws as a trace has them. `folder`: where the workers left its images."""
+        draws, earlier = [], list(self.meshes)
         for draw in frame.draws:
-            material = self._material_of(draw)
-            part = slice(draw.first, draw.first + len(draw.triangles))
-            mesh, matrix = self._mesh_of(draw, material, taken)
-            taken.add(mesh.name)
-            if mesh.bakes:
-                mesh.add_colors(*(values[part] for values in colors))
+            program = self._program_of(draw.program) if draw.program else None
+            mesh, matrix = self._mesh_of(draw, program, len(earlier))
             entry = {"mesh": mesh.name, "cull": draw.cull}
             if not np.array_equal(matrix, np.eye(4)):
                 entry["transform"] = [float(value) for value in matrix.T.ravel()]
-            state = dict(draw.state)
-            if draw.look is None or not draw.look.mixes:
-                state.pop("blend", None)  # the picture's colours are what blending has made
-            if draw.is_ground:
-                state.pop("color_mask")
-            if state:
-                entry["state"] = state
+            if draw.state:
+                entry["state"] = draw.state
+            if draw.program:
+                entry["program"] = self._use_of(draw.program, program, folder)
             draws.append(entry)
         return draws
 
-    def _mesh_of(self, draw, material, taken):
-        """A mesh of an earlier frame that only moved, or a new one."""
-        new = Mesh(f"mesh{len(self.meshes)}", draw, material)
-        size = (len(draw.clip), len(draw.triangles), draw.topology, material)
-        for mesh in self._by_size.get(size, []):
-            if mesh.name in taken:  # draws of one frame do not share a mesh: each has its own colours
-                continue
-            matrix = mesh.matrix_to(new)
+    def _mesh_of(self, draw, program, earlier):
+        """A mesh that is there already, one of the first `earlier` ones that only moved, or a new one."""
+        new = Mesh(f"mesh{len(self.meshes)}", draw, program)
+        if new.key in self._by_key:
+            return self._by_key[new.key], np.eye(4)
+        size = (len(draw.clip), len(draw.triangles), program)
+        for number in self._by_size.get(size, []):
+            matrix = self.meshes[number].matrix_to(new) if number < earlier else None
             if matrix is not None:
-                return mesh, matrix
+                return self.meshes[number], matrix
+        self._by_size.setdefault(size, []).append(len(self.meshes))
+        self._by_key[new.key] = new
         self.meshes.append(new)
-        self._by_size.setdefault(size, []).append(new)
         return new, np.eye(4)
 
-    def _material_of(self, draw):
-        """The name of the draw's material, or None if its triangles have colours of their own and no alpha test."""
-        look, test = draw.look, draw.alpha_test
-        if look is None and test is None:
-            return None
-        material = {"unlit": True, "double_sided": True}
-        blends = draw.blends and look is not None and look.mixes
-        slot = look.slot if look else test.slot
-        if slot is not None:
-            binding = draw.textures[slot]
-            texture = self.textures.get(binding)
-            channels = "a" if look is None else "rgba" if texture.has_alpha and (blends or test) else "rgb"
-            found = {"image": self._image_of(binding, texture, channels)}
-            for key, mode in zip(("wrap_u", "wrap_v"), texture.wrap):
-                if mode != "repeat":
-                    found[key] = mode
-            if texture.nearest:
-                found["magnify"] = "nearest"
-            if len(texture.levels) == 1:
-                found["mip"] = "none"
-            material["base_texture"] = found
-        if test:
-            material.update(alpha_mode="mask", alpha_cutoff=round(test.cutoff, 6))
-        if blends and "alpha_mode" not in material:
-            material["alpha_mode"] = "blend"
-        if look and look.constant is not None:
-            material["base_color"] = [round(float(c), 6) for c in look.constant] + [1]
-        key = repr(sorted(material.items()))
-        if key not in self._material_names:
-            self._material_names[key] = f"material{len(self.materials)}"
-            self.materials[self._material_names[key]] = material
-        return self._material_names[key]
+    def _program_of(self, found):
+        """The number of the program: its module, its specialization and its inputs."""
+        digest = hashlib.sha256(found["spirv"]).hexdigest()
+        entry = {"name": digest[:16], "spirv": np.frombuffer(found["spirv"], "<u4"), "inputs": found["inputs"]}
+        if found["specialization"]:
+            entry["specialization"] = found["specialization"]
+        key = json.dumps([digest, found["specialization"], found["inputs"]], sort_keys=True)
+        return self.programs.number(key, lambda: entry)
 
-    def _image_of(self, binding, texture, channels):
-        """The name of the texture's image with some of its channels; "a": white with the texture's opacity."""
-        name = f"texture{binding['id']}{'' if binding['swizzle'] == 'rgba' else '_' + binding['swizzle']}_{channels}"
-        if name not in self.images:
-            texels = np.rint(texture.texels * 255).astype(np.uint8)
-            if channels == "a":
-                texels[..., :3] = 255
-            self.images[name] = texels[..., :3] if channels == "rgb" else texels
-        return name
+    def _use_of(self, found, program, folder):
+        use = {"program": program}
+        if found["buffers"]:
+            use["buffers"] = [{**one, "bytes": _base64(one["bytes"])} for one in found["buffers"]]
+        if found["push_constants"]:
+            use["push_constants"] = _base64(found["push_constants"])
+        images = [bound for bound in (self._bound(one, folder) for one in found["images"]) if bound]
+        if images:
+            use["images"] = images
+        return use
+
+    def _bound(self, found, folder):
+        """A bound image as a trace has it, or None if its format could not be read."""
+        bound = {key: value for key, value in found.items() if key not in ("sampler", "image", "shape", "array")}
+        if "image" in found:
+            with open(os.path.join(folder, found["image"] + ".pickle"), "rb") as file:
+                image = pickle.load(file)
+            if image is None:
+                self.unread.add(found["image"])
+                return None
+            key = (hashlib.sha256(image["texels"]).digest(), image["width"], image["format"], found["shape"],
+                   found["array"])
+            bound["image"] = self.images.number(key, lambda: self._image_of(image, found))
+        if "sampler" in found:
+            key = json.dumps(found["sampler"], sort_keys=True)
+            bound["sampler"] = self.samplers.number(key, lambda: found["sampler"])
+        return bound
+
+    def _image_of(self, image, found):
+        return {"name": f"image{len(self.images.entries)}", "shape": found["shape"], **image,
+                **({"array": True} if found["array"] else {}), "texels": np.frombuffer(image["texels"], "u1")}

@@ -11,6 +11,8 @@ def _missing(needs_display, program):
         yield "python3-numpy"
     if importlib.util.find_spec("renderdoc") is None:
         yield "python3-renderdoc"
+    if importlib.util.find_spec("PIL") is None:
+        yield "python3-pil"
     if needs_display and not os.environ.get("DISPLAY") and not shutil.which("Xvfb"):
         yield "xvfb"
     if program == "glretrace" and not shutil.which("glretrace"):

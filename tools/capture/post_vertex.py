@@ -1,4 +1,4 @@
-"""The geometry of a draw after the last stage before the rasterizer: positions, attributes and triangles."""
+"""The geometry of a draw after the last stage before the rasterizer: positions, varyings and triangles."""
 import numpy as np
 import renderdoc as rd
 
@@ -22,20 +22,20 @@ def _last_stage(pipe):
     return pipe.GetShaderReflection(rd.ShaderStage.Vertex), rd.MeshDataStage.VSOut
 
 
-def _layout(signature, is_vulkan):
-    """(name, offset, components, is a clip distance) of the outputs after the position, as RenderDoc packs them:
-    aligned as in std430 for Vulkan, tightly for OpenGL."""
+def _layout(signature):
+    """(location, first component, offset, components) of the outputs after the position, as RenderDoc packs them:
+    aligned as in std430. The location of clip distances is None."""
     offset, outputs = 16, []
     for output in signature:
         if output.systemValue == rd.ShaderBuiltin.Position:
             continue
-        align = {1: 4, 2: 8}.get(output.compCount, 16) if is_vulkan else 4
+        align = {1: 4, 2: 8}.get(output.compCount, 16)
         offset = (offset + align - 1) // align * align
-        wanted = (output.systemValue in (rd.ShaderBuiltin.Undefined, rd.ShaderBuiltin.ClipDistance)
-                  and output.varType == rd.VarType.Float)
-        if wanted:
-            outputs.append((output.varName or f"output {output.regIndex}", offset, output.compCount,
-                            output.systemValue == rd.ShaderBuiltin.ClipDistance))
+        component = (output.regChannelMask & -output.regChannelMask).bit_length() - 1
+        if output.systemValue == rd.ShaderBuiltin.Undefined:
+            outputs.append((output.regIndex, max(0, component), offset, output.compCount))
+        elif output.systemValue == rd.ShaderBuiltin.ClipDistance:
+            outputs.append((None, 0, offset, output.compCount))
         offset += 4 * output.compCount
     return outputs
 
@@ -83,15 +83,23 @@ def _instance(mesh, buffers, topology):
     return rows.reshape(count, mesh.vertexByteStride), triangles
 
 
-def read_geometry(replay, command, z_from_0):
-    """(clip positions n x 4 float32 with -w <= z <= w, attributes by name, triangles) of the current draw, all its
-    instances together. Raises LeftOut."""
+def _varyings(inputs, outputs, column, count):
+    """Bits (count x sum of components) of what the fragment shader reads, from outputs with the same locations and
+    components; 0 where there is none."""
+    at = {(location, first + k): offset + 4 * k for location, first, offset, components in outputs
+          for k in range(components)}
+    wanted = [(one["location"], one.get("component", 0) + k) for one in inputs for k in range(one["count"])]
+    parts = [column(at[place], 1, "<u4") if place in at else np.zeros((count, 1), np.uint32) for place in wanted]
+    return np.concatenate(parts, 1) if parts else np.zeros((count, 0), np.uint32)
+
+
+def read_geometry(replay, command, z_from_0, inputs):
+    """(clip positions n x 4 float32 with -w <= z <= w, bits of the fragment shader's `inputs` n x components uint32,
+    triangles) of the current draw, all its instances together. Raises LeftOut."""
     controller = replay.controller
-    pipe = controller.GetPipelineState()
-    reflection, stage = _last_stage(pipe)
+    reflection, stage = _last_stage(controller.GetPipelineState())
     if reflection is None:
         raise LeftOut("no vertex shader", 0)
-    outputs = _layout(reflection.outputSignature, replay.is_vulkan)
     buffers, rows, triangles, base = _Buffers(controller), [], [], 0
     instances = max(1, command.numInstances) if command.flags & rd.ActionFlags.Instanced else 1
     for instance in range(instances):
@@ -101,19 +109,19 @@ def read_geometry(replay, command, z_from_0):
         triangles.append(corners + base)
         base += len(vertices)
     rows, triangles = np.concatenate(rows), np.concatenate(triangles)
-    column = lambda offset, components: np.ascontiguousarray(rows[:, offset: offset + 4 * components]).view("<f4")
-    clip = column(0, 4)
-    fits = [output for output in outputs if output[1] + 4 * output[2] <= rows.shape[1]]
-    attributes = {name: column(offset, count) for name, offset, count, cuts in fits if not cuts}
-    distances = [column(offset, count) for _, offset, count, cuts in fits if cuts]
+    column = lambda offset, components, kind: np.ascontiguousarray(
+        rows[:, offset: offset + 4 * components]).view(kind)
+    outputs = [output for output in _layout(reflection.outputSignature) if output[2] + 4 * output[3] <= rows.shape[1]]
+    clip = column(0, 4, "<f4")
+    varyings = _varyings(inputs, outputs, column, len(rows))
+    distances = [column(offset, count, "<f4") for location, _, offset, count in outputs if location is None]
     if distances and len(triangles):
-        names = list(attributes)
-        columns, triangles = geometry.clip_to_planes([clip] + [attributes[name] for name in names], triangles,
-                                                     np.concatenate(distances, 1))
-        clip, attributes = columns[0], dict(zip(names, columns[1:]))
+        (clip, floats), triangles = geometry.clip_to_planes([clip, varyings.view("<f4")], triangles,
+                                                            np.concatenate(distances, 1))
+        varyings = floats.view("<u4")
     sound = np.isfinite(clip).all(1)
     triangles = triangles[sound[triangles].all(1)]
     if z_from_0:
         clip = clip.copy()
         clip[:, 2] = 2 * clip[:, 2] - clip[:, 3]
-    return clip, attributes, triangles
+    return clip, varyings, triangles

@@ -1,8 +1,7 @@
 """Runs a program under RenderDoc and has it capture frames.
 
-There are two ways. `direct`: RenderDoc watches the program's OpenGL (core profile, ES) or Vulkan. `zink`: Mesa's zink
-turns the program's OpenGL, of any version and with fixed functions too, into Vulkan, which RenderDoc's layer
-watches."""
+RenderDoc's layer watches Vulkan. Mesa's zink turns a program's OpenGL, of any version and with fixed functions too, into
+Vulkan."""
 import os
 import subprocess
 import threading
@@ -13,25 +12,17 @@ import renderdoc as rd
 from failure import Failure
 from redraw import ask_for_redraw
 
-SETTLE = 10.0  # seconds that a program has to show its first picture with one way, before the other way is tried
 REDRAW_AFTER = 2.0  # seconds without a new picture before the program's windows are asked to draw again
 
-ENVIRONMENTS = {
-    "direct": {"LD_PRELOAD": "librenderdoc.so"},
-    "zink": {"MESA_LOADER_DRIVER_OVERRIDE": "zink", "LIBGL_ALWAYS_SOFTWARE": "1"},
-    "vulkan": {},  # the layer alone, for programs that replay Vulkan
-}
-
-
-class NotSupported(Exception):
-    """RenderDoc cannot capture what the program draws with; `reason` in its words."""
+ENVIRONMENT = {"ENABLE_VULKAN_RENDERDOC_CAPTURE": "1", "MESA_LOADER_DRIVER_OVERRIDE": "zink",
+               "LIBGL_ALWAYS_SOFTWARE": "1"}
 
 
 class Recording:
-    """`paths` of the captures in the order of frames, the number of the first frame, the API, and the way."""
+    """`paths` of the captures in the order of frames, and the number of the first frame."""
 
-    def __init__(self, way):
-        self.way, self.paths, self.frame, self.api = way, [], None, ""
+    def __init__(self):
+        self.paths, self.frame = [], None
 
 
 class _Output:
@@ -73,11 +64,11 @@ def _attach(program):
 class _Session:
     """One run of the program."""
 
-    def __init__(self, processes, words, way, display, folder, wishes, progress, deadline):
+    def __init__(self, processes, words, display, folder, wishes, progress, deadline):
         self.wishes, self.progress, self.display = wishes, progress, display
         self.start, self.deadline = time.monotonic(), deadline
-        environment = {**os.environ, "DISPLAY": display, "ENABLE_VULKAN_RENDERDOC_CAPTURE": "1",
-                       "RENDERDOC_CAPFILE": os.path.join(folder, f"{way}_capture"), **ENVIRONMENTS[way]}
+        environment = {**os.environ, **ENVIRONMENT, "DISPLAY": display,
+                       "RENDERDOC_CAPFILE": os.path.join(folder, "capture")}
         try:
             self.program = processes.start(words, env=environment, stdin=subprocess.DEVNULL,
                                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -85,12 +76,12 @@ class _Session:
             raise Failure(f"{words[0]}: {error.strerror}")
         self.output = _Output(self.program.stdout)
         self.name = os.path.basename(words[0])
-        self.result = Recording(way)
+        self.result = Recording()
         self.control, self.triggered_at, self.windows, self.cycled = None, None, 0, False
         self.presents, self.refused = False, ""
 
     def run(self):
-        """Waits until all frames are captured. Raises Failure or NotSupported."""
+        """Waits until all frames are captured. Raises Failure."""
         try:
             while len(self.result.paths) < self.wishes.frames:
                 self._check()
@@ -109,22 +100,17 @@ class _Session:
         return self.result
 
     def _check(self):
-        now = time.monotonic()
+        if self.refused and not self.presents:
+            raise Failure(f"RenderDoc cannot capture {self.name} ({self.refused})")
         done = self.program.poll()
         if done is not None:
             how = f"was ended by signal {-done}" if done < 0 else f"ended with exit code {done}"
             when = "before the frame that was asked for" if self.presents else "without showing a picture"
-            if self.refused and not self.presents:
-                raise NotSupported(self.refused)
             raise Failure(f"{self.name} {how} {when}{self.output.last()}")
-        if self.refused and not self.presents:
-            raise NotSupported(self.refused)
-        if now > self.deadline:
+        if time.monotonic() > self.deadline:
             what = "frame captured" if self.presents else "picture shown"
             raise Failure(f"{self.name}: no {what} within the time limit (see --timeout){self.output.last()}")
-        if not self.presents and self.result.way == "direct" and now - self.start > max(SETTLE, self.wishes.after):
-            raise NotSupported("RenderDoc sees no picture")
-        self.progress.show(f"{self.name} runs ({self.result.way})" + (", capturing" if self.triggered_at else ""))
+        self.progress.show(f"{self.name} runs" + (", capturing" if self.triggered_at else ""))
 
     def _trigger(self):
         if self.wishes.frame is not None:
@@ -152,7 +138,6 @@ class _Session:
             capture = message.newCapture
             self.result.paths.append(capture.path)
             self.result.frame = capture.frameNumber if self.result.frame is None else self.result.frame
-            self.result.api = str(capture.api)
         elif message.type == kind.RegisterAPI:
             use = message.apiUse
             if use.presenting and use.supported:
@@ -177,16 +162,10 @@ class Wishes:
         self.after, self.frame, self.frames, self.second_window = after, frame, frames, second_window
 
 
-def record(processes, words, ways, display, folder, wishes, progress, timeout):
-    """Captures frames of the program `words` by the first of `ways` that works."""
-    deadline = time.monotonic() + timeout
-    reasons = []
-    for way in ways:
-        session = _Session(processes, words, way, display, folder, wishes, progress, deadline)
-        try:
-            return session.run()
-        except NotSupported as error:
-            reasons.append(f"{way}: {error}")
-        finally:
-            processes.end(session.program)
-    raise Failure(f"RenderDoc cannot capture {os.path.basename(words[0])} ({'; '.join(reasons)})")
+def record(processes, words, display, folder, wishes, progress, timeout):
+    """Captures frames of the program `words`."""
+    session = _Session(processes, words, display, folder, wishes, progress, time.monotonic() + timeout)
+    try:
+        return session.run()
+    finally:
+        processes.end(session.program)

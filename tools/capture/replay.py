@@ -1,39 +1,44 @@
 """A RenderDoc capture that is opened for replay: its commands, pictures and textures."""
+import bisect
 import os
+import re
 
+import numpy as np
 import renderdoc as rd
 
+import srgb
+from images import Format, decode_color, decode_depth, size_in_bytes, stored
 from passes import Action, clears_of
-from pixels import Format, decode_color, decode_depth
 
 _NULL = rd.ResourceId.Null()
+_READS = re.compile("_Resource|_Constants|Src|Barrier|InputTarget|Unused|Discard")  # names of uses that write nothing
 
 
 class ReplayError(Exception):
     """One line: why a capture cannot be replayed."""
 
 
-# What makes Mesa's software drivers fast where only vertices matter: shaders, each of which runs once, are compiled
-# without optimisation, and no pixels are drawn. OpenGL's textures are read by drawing them. Other drivers do not know
-# these variables.
-_VERTICES_ONLY = {"GALLIVM_PERF": "nopt", "LP_NUM_THREADS": "1"}
-_NO_PIXELS = {"LP_NO_RAST": "1"}
+# Mesa's software drivers filter textures by shortcuts, which this turns off: what they draw then is what the
+# specification says. "nopt" compiles shaders faster. Other drivers do not know this variable.
+FILTERING = "no_brilinear,no_rho_approx,no_quad_lod,no_aos_sampling"
+_ENVIRONMENT = {"GALLIVM_PERF": FILTERING}
+_FOR_DRAWS = {"GALLIVM_PERF": FILTERING + ",nopt", "LP_NUM_THREADS": "1"}
 
 
 class Replay:
-    """Opens a capture. `color`, `depth` and textures are named by RenderDoc's numbers. `vertices_only`: pictures that
-    the frame draws are not asked for."""
+    """Opens a capture of Vulkan. `color`, `depth` and textures are named by RenderDoc's numbers. `for_draws`: many
+    draws are looked at, and the picture is not what matters."""
 
-    def __init__(self, path, vertices_only=False):
+    def __init__(self, path, for_draws=False):
+        os.environ.update(_FOR_DRAWS if for_draws else _ENVIRONMENT)  # before the driver is loaded
         rd.InitialiseReplay(rd.GlobalEnvironment(), [])
         self.file = rd.OpenCaptureFile()
         opened = self.file.OpenFile(path, "", None)
         if opened != rd.ResultCode.Succeeded:
             raise ReplayError(f"{path}: not a RenderDoc capture that can be read ({opened.Message().strip()})")
-        self.api = self.file.DriverName()
-        self.is_vulkan = self.api == "Vulkan"
-        if vertices_only:  # before the driver is loaded
-            os.environ.update(_VERTICES_ONLY | (_NO_PIXELS if self.is_vulkan else {}))
+        if self.file.DriverName() != "Vulkan":
+            raise ReplayError(f"{path}: expected a capture of Vulkan, found {self.file.DriverName()}; capture the "
+                              "program itself, whose OpenGL becomes Vulkan")
         opened, self.controller = self.file.OpenCapture(rd.ReplayOptions(), None)
         if opened != rd.ResultCode.Succeeded:
             raise ReplayError(f"{path}: this machine's driver cannot replay it ({opened.Message().strip()})")
@@ -43,6 +48,7 @@ class Replay:
         self.structure = self.controller.GetStructuredFile()
         self.commands = []
         self._flatten(self.controller.GetRootActions())
+        self._writes = {}
 
     def close(self):
         self.controller.Shutdown()
@@ -74,8 +80,10 @@ class Replay:
         return next(command for command in self.commands if command.eventId == event)
 
     def format_of(self, texture):
-        f = self.textures[texture].format
-        return Format(f.type.name, f.compByteWidth, f.compCount, f.compType.name, f.BGRAOrder())
+        return self.format_named(self.textures[texture].format)
+
+    def format_named(self, f):
+        return Format(f.Name(), f.type.name, f.compByteWidth, f.compCount, f.compType.name, f.BGRAOrder())
 
     def format_name(self, texture):
         return self.textures[texture].format.Name() if texture in self.textures else ""
@@ -87,34 +95,57 @@ class Replay:
     def samples_of(self, texture):
         return max(1, self.textures[texture].msSamp) if texture in self.textures else 1
 
-    def is_target(self, texture):
-        flags = self.textures[texture].creationFlags
-        return bool(flags & (rd.TextureCategory.ColorTarget | rd.TextureCategory.DepthTarget))
-
-    def _bytes(self, texture, sample):
-        return bytes(self.controller.GetTextureData(self.textures[texture].resourceId, rd.Subresource(0, 0, sample)))
+    def _bytes(self, texture, level=0, layer=0, sample=0):
+        place = rd.Subresource(level, layer, sample)
+        return bytes(self.controller.GetTextureData(self.textures[texture].resourceId, place))
 
     def color_picture(self, texture):
         """height x width x 4 float32 as stored, row 0 on top, the mean of the samples; None if it cannot be read."""
-        samples = [self._color(texture, sample) for sample in range(self.samples_of(texture))]
-        if samples[0] is None:
-            return None
-        picture = sum(samples) / len(samples)
-        return picture if self.is_vulkan else picture[::-1]
-
-    def _color(self, texture, sample):
-        return decode_color(self._bytes(texture, sample), *self.size_of(texture), self.format_of(texture))
+        format = self.format_of(texture)
+        samples = [decode_color(self._bytes(texture, sample=sample), *self.size_of(texture), format)
+                   for sample in range(self.samples_of(texture))]
+        if samples[0] is None or len(samples) == 1:
+            return samples[0]
+        if format.numbers != "UNormSRGB":
+            return sum(samples) / len(samples)
+        mean = sum(srgb.to_linear(sample[..., :3]) for sample in samples) / len(samples)
+        return np.concatenate([srgb.from_linear(mean), sum(samples)[..., 3:] / len(samples)], -1, dtype=np.float32)
 
     def depth_picture(self, texture):
         """height x width float32 of window depths, row 0 on top, of sample 0; None if it cannot be read."""
         if texture not in self.textures:
             return None
-        depth = decode_depth(self._bytes(texture, 0), *self.size_of(texture), self.format_of(texture), self.is_vulkan)
-        return depth if depth is None or self.is_vulkan else depth[::-1]
+        return decode_depth(self._bytes(texture), *self.size_of(texture), self.format_of(texture))
 
-    def texture_texels(self, texture):
-        """The texture's largest level, rows in the order of v from 0, or None if it is not a flat colour texture."""
+    def version(self, texture, event):
+        """How often the frame has written a texture before an event."""
+        if texture not in self._writes:
+            used = self.controller.GetUsage(self.textures[texture].resourceId)
+            self._writes[texture] = sorted({use.eventId for use in used if not _READS.search(use.usage.name)})
+        return bisect.bisect_left(self._writes[texture], event)
+
+    def image(self, texture, format):
+        """(name of a trace's format, texels as a trace has them) of all levels and layers of a texture, whose bytes are
+        looked at as `format`; None if it cannot be read."""
         t = self.textures[texture]
-        if t.depth > 1 or t.arraysize > 1 or t.cubemap or t.msSamp > 1:
+        if t.msSamp > 1:
             return None
-        return self._color(texture, 0)
+        parts = []
+        for level in range(t.mips):
+            width, height, depth = (max(1, side >> level) for side in (t.width, t.height, t.depth))
+            size = size_in_bytes(width, height, format)
+            for layer in range(t.arraysize):
+                data = self._bytes(texture, level, layer)
+                if len(data) < depth * size:
+                    return None
+                parts += [stored(data[k * size: (k + 1) * size], width, height, format) for k in range(depth)]
+        return None if None in parts else (parts[0][0], b"".join(texels for _, texels in parts))
+
+    @property
+    def api(self):
+        """OpenGL (zink) where Mesa's zink has made Vulkan of it."""
+        for chunk in self.structure.chunks:
+            if chunk.name == "vkCreateInstance":
+                engine = chunk.FindChildRecursively("EngineName")
+                return "OpenGL (zink)" if engine is not None and "zink" in engine.AsString() else "Vulkan"
+        return "Vulkan"

@@ -8,7 +8,8 @@ FACTOR = {"Zero": "zero", "One": "one", "SrcCol": "source_color", "InvSrcCol": "
           "DstCol": "destination_color", "InvDstCol": "one_minus_destination_color", "SrcAlpha": "source_alpha",
           "InvSrcAlpha": "one_minus_source_alpha", "DstAlpha": "destination_alpha",
           "InvDstAlpha": "one_minus_destination_alpha", "SrcAlphaSat": "source_alpha_saturate",
-          "FactorRGB": "constant", "FactorAlpha": "constant"}
+          "FactorRGB": "constant", "InvFactorRGB": "one_minus_constant", "FactorAlpha": "constant_alpha",
+          "InvFactorAlpha": "one_minus_constant_alpha"}
 OPERATION = {"Add": "add", "Subtract": "subtract", "ReversedSubtract": "reverse_subtract", "Minimum": "min",
              "Maximum": "max"}
 STENCIL = {"Keep": "keep", "Zero": "zero", "Replace": "replace", "IncSat": "increment", "DecSat": "decrement",
@@ -20,17 +21,15 @@ RESOLUTION = {"D16": 2.0**-16, "D16S8": 2.0**-16, "D24": 2.0**-24, "D24S8": 2.0*
               "D32S8": 2.0**-24}
 
 
-def picture_viewport(x, y, width, height, target_height, y_up):
-    """A viewport in the picture's coordinates, for clip space with y up. `y_up`: OpenGL's window (row 0 at the bottom);
-    otherwise Vulkan's, whose clip space has y down, so that its height changes its sign."""
-    return [x, target_height - y - height, width, height] if y_up else [x, y + height, width, -height]
+def picture_viewport(x, y, width, height):
+    """Vulkan's viewport for clip space with y up: Vulkan's own has y down, so that the height changes its sign."""
+    return [x, y + height, width, -height]
 
 
-def picture_scissor(x, y, width, height, target_width, target_height, y_up):
-    """A scissor rectangle within the target, in the picture's coordinates."""
-    top = target_height - y - height if y_up else y
-    x0, y0 = max(0, x), max(0, top)
-    x1, y1 = min(target_width, x + width), min(target_height, top + height)
+def picture_scissor(x, y, width, height, target_width, target_height):
+    """A scissor rectangle within the target."""
+    x0, y0 = max(0, x), max(0, y)
+    x1, y1 = min(target_width, x + width), min(target_height, y + height)
     return [x0, y0, max(0, x1 - x0), max(0, y1 - y0)]
 
 
@@ -40,28 +39,38 @@ def stencil_of(face):
             "fail": STENCIL[face["fail"]], "depth_fail": STENCIL[face["depth_fail"]], "pass": STENCIL[face["pass"]]}
 
 
-def blend_of(blend):
-    """The blending of RGB, or None where the new colour replaces the old one. ValueError if it cannot be told."""
-    source, destination = blend["source"], blend["destination"]
-    for factor in (source, destination):
+def _equation_of(blend):
+    for factor in (blend["source"], blend["destination"]):
         if factor not in FACTOR:
             raise ValueError(f"blend factor {factor}")
-    if (source, destination, blend["operation"]) == ("One", "Zero", "Add"):
+    return {"source": FACTOR[blend["source"]], "destination": FACTOR[blend["destination"]],
+            "operation": OPERATION[blend["operation"]]}
+
+
+def blend_of(blend):
+    """How what is stored is blended, or None where the new colour replaces it. `alpha`: where it differs from the
+    colours' equation. ValueError if it cannot be told."""
+    color, alpha = _equation_of(blend["color"]), _equation_of(blend["alpha"])
+    if color == alpha == {"source": "one", "destination": "zero", "operation": "add"}:
         return None
-    return {"source": FACTOR[source], "destination": FACTOR[destination], "operation": OPERATION[blend["operation"]]}
+    if alpha != color:
+        color["alpha"] = alpha
+    if "constant" in repr(color):
+        color["constant"] = blend["constant"]
+    return color
 
 
 def state_of(api, width, height):
     """A draw's state from `api`, what api_state.py has read, on a target of width x height pixels. What equals the
     trace format's default is left out."""
     state = {}
-    viewport = picture_viewport(*api["viewport"], height, api["y_up"])
+    viewport = picture_viewport(*api["viewport"])
     if viewport != [0, 0, width, height]:
         state["viewport"] = viewport
     if api["depth_range"] != [0, 1]:
         state["depth_range"] = api["depth_range"]
     if api["scissor"]:
-        scissor = picture_scissor(*api["scissor"], width, height, api["y_up"])
+        scissor = picture_scissor(*api["scissor"], width, height)
         if scissor != [0, 0, width, height]:
             state["scissor"] = scissor
     if not api["depth_test"]:
@@ -76,8 +85,7 @@ def state_of(api, width, height):
                                "slope": api["slope_bias"], "clamp": api["bias_clamp"]}
     if api["depth_clamp"]:
         state["depth_clip"] = False
-    # OpenGL looks at its window with y up, and Vulkan's formula for areas has the opposite sign for y down: both mean
-    # what one sees in the picture.
+    # Vulkan's formula for areas has the sign for y down: it means what one sees in the picture.
     if not api["front_ccw"]:
         state["front_face"] = "clockwise"
     if api["blend"]:

@@ -7,7 +7,6 @@ import os
 import numpy as np
 
 import png
-import srgb
 
 
 class Buffer:
@@ -17,8 +16,8 @@ class Buffer:
         self.name, self.parts, self.size = name, [], 0
 
     def view(self, array, kind):
-        """Adds an array; `kind` is the view's type: float32, uint32, uint16 or srgb8."""
-        data = np.ascontiguousarray(array, {"float32": "<f4", "uint32": "<u4", "uint16": "<u2", "srgb8": "u1"}[kind])
+        """Adds an array; `kind` is the view's type: float32, uint32, uint16 or uint8."""
+        data = np.ascontiguousarray(array, {"float32": "<f4", "uint32": "<u4", "uint16": "<u2", "uint8": "u1"}[kind])
         self.parts += [b"\0" * (-self.size % 4), data.tobytes()]
         offset = self.size + (-self.size % 4)
         self.size = offset + data.nbytes
@@ -27,32 +26,27 @@ class Buffer:
 
 def mesh_entry(mesh, buffer):
     """A mesh of a trace, or None if none of its triangles has an area."""
-    positions, uv, vertex_colors, indices, colors = mesh.welded()
+    positions, varyings, indices = mesh.welded()
     if not len(indices):
         return None
     entry = {"positions4": buffer.view(positions, "float32"),
              "indices": buffer.view(indices, "uint16" if len(positions) <= 65536 else "uint32")}
-    if uv is not None:
-        entry["uv0"] = buffer.view(uv, "float32")
-    if vertex_colors is not None:
-        entry["vertex_colors"] = buffer.view(vertex_colors, "srgb8")
-    if colors is not None:
-        entry["colors"] = buffer.view(np.rint(srgb.from_linear(np.clip(colors, 0, 1)) * 255), "srgb8")
-    if mesh.material:
-        entry["materials"] = [mesh.material]
+    if varyings.shape[1]:
+        entry["varyings"] = buffer.view(varyings, "uint32")
     return entry
 
 
 def json_text(trace):
-    """The trace as JSON, a mesh, material, image or draw a line."""
+    """The trace as JSON, a mesh, program, image or draw a line."""
     one = lambda value: json.dumps(value, separators=(",", ":"))
     named = lambda values: "{" + ",".join(f"\n  {one(key)}:{one(value)}" for key, value in values.items()) + "}"
+    listed = lambda values: "[" + ",".join(f"\n  {one(value)}" for value in values) + "]"
     frames = []
     for frame in trace["frames"]:
         rest = one({key: value for key, value in frame.items() if key != "draws"})
         frames.append(rest[:-1] + ',"draws":[' + ",".join("\n  " + one(draw) for draw in frame["draws"]) + "]}")
-    parts = [f'"{key}":{named(value) if key in ("images", "materials", "meshes") else one(value)}'
-             for key, value in trace.items() if key != "frames"]
+    form = {"images": named, "meshes": named, "programs": listed, "program_images": listed}
+    parts = [f'"{key}":{form.get(key, one)(value)}' for key, value in trace.items() if key != "frames"]
     return "{" + ",\n".join(parts + ['"frames":[\n' + ",\n".join(frames) + "]"]) + "}\n"
 
 
@@ -77,7 +71,7 @@ def write_all(files):
 
 def write_trace(path, frames, draws_of_frames, collection, source):
     """Writes the trace of frame.Frame objects with the draws that meshes.Collection made of them. Returns the bytes of
-    meshes in the buffer and the number of stored triangles."""
+    all files."""
     stem = os.path.splitext(os.path.basename(path))[0]
     folder = os.path.dirname(path) or "."
     arrays, depths = Buffer("arrays"), Buffer("depths")
@@ -88,28 +82,27 @@ def write_trace(path, frames, draws_of_frames, collection, source):
         images[name] = {"file": file}
         files.append((os.path.join(folder, file), png.encode(pixels)))
 
-    triangles, without_area = 0, {}
+    without_area = {}
     for mesh in collection.meshes:
         entry = mesh_entry(mesh, arrays)
         stored = entry["indices"]["count"] // 3 if entry else 0
         without_area[mesh.name] = len(mesh.triangles) - stored
-        triangles += stored
         if entry:
             meshes[mesh.name] = entry
-    for name, pixels in collection.images.items():
-        add_image(name, pixels)
+    programs = [{**one, "spirv": arrays.view(one["spirv"], "uint32")} for one in collection.programs.entries]
+    program_images = [{**one, "texels": arrays.view(one["texels"], "uint8")} for one in collection.images.entries]
     written = []
     for number, (frame, draws) in enumerate(zip(frames, draws_of_frames)):
         thin = [without_area[draw["mesh"]] for draw in draws if without_area[draw["mesh"]]]
         if thin:
             frame.left_out["two corners of the triangle are one point"] = (len(thin), sum(thin))
-        entry = {"width": frame.width, "height": frame.height, "background": frame.background,
+        entry = {"width": frame.width, "height": frame.height, "background": frame.background, "target": frame.target,
                  "passes": [{"name": one["name"], "width": one["size"][0], "height": one["size"][1],
                              "draws": one["draws"], "triangles": one["triangles"], "kept": one["kept"],
                              "reason": one["reason"]} for one in frame.passes],
                  "left_out": [{"reason": reason, "draws": count, "primitives": primitives}
                               for reason, (count, primitives) in sorted(frame.left_out.items())]}
-        captured = {"clear_depth": frame.clear_depth}
+        captured = {"clear_depth": frame.clear_depth, "samples": frame.samples}
         if frame.color is not None:
             name = "captured" if len(frames) == 1 else f"captured{number}"
             add_image(name, np.rint(frame.color * 255).astype(np.uint8))
@@ -124,9 +117,10 @@ def write_trace(path, frames, draws_of_frames, collection, source):
         if buffer.size:
             buffers[buffer.name] = {"file": stem + suffix, "bytes": buffer.size}
             files.append((os.path.join(folder, stem + suffix), b"".join(buffer.parts)))
-    trace = {"beampipe_trace": 2, "source": source, "buffers": buffers, "images": images,
-             "materials": collection.materials, "meshes": meshes, "frames": written}
+    trace = {"beampipe_trace": 2, "source": source, "buffers": buffers, "images": images, "programs": programs,
+             "program_images": program_images, "program_samplers": collection.samplers.entries, "meshes": meshes,
+             "frames": written}
     files.append((path, json_text({key: value for key, value in trace.items() if value or key in ("meshes", "frames")})
                   .encode()))
     write_all(files)
-    return arrays.size, triangles
+    return sum(len(data) for _, data in files)

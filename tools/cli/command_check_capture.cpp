@@ -1,4 +1,5 @@
-// beampipe check-capture: compares the depths of a captured trace's frames with those of the program itself.
+// beampipe check-capture: compares the depths and the pictures of a captured trace's frames with those of the program
+// itself.
 
 #include <cstdio>
 #include <iostream>
@@ -8,6 +9,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/evaluate/captured_check.h"
+#include "tools/evaluate/captured_colors.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/files/image_io.h"
@@ -29,75 +31,148 @@ std::string name_of(const DrawDifference& draw) {
   return draw.draw == kNoDraw ? "none (only in the program)" : std::to_string(draw.draw);
 }
 
-Json to_json(std::size_t frame, const CapturedCheck& check) {
-  Json json = {{"index", frame},
-               {"covered_here", check.here},
-               {"covered_in_program", check.there},
-               {"covered_in_both", check.both},
-               {"coverage", check.coverage()},
-               {"depths_within_1e-4", check.close_part()},
-               {"depths_within_1e-6", check.equal_part()},
-               {"largest_difference", check.largest},
-               {"draws", Json::array()}};
-  for (const DrawDifference& draw : check.draws) {
-    json["draws"].push_back({{"draw", draw.draw == kNoDraw ? Json() : Json(draw.draw)},
-                             {"pixels", draw.pixels},
-                             {"differing_pixels", draw.differing},
-                             {"largest_difference", draw.largest}});
+// The technique that draws as many samples of each pixel as the program.
+Technique technique_of(const Frame& frame) {
+  return parse_technique("msaa:" + std::to_string(frame.capture.pictures.samples));
+}
+
+Json to_json(const std::vector<DrawDifference>& draws) {
+  Json json = Json::array();
+  for (const DrawDifference& draw : draws) {
+    json.push_back({{"draw", draw.draw == kNoDraw ? Json() : Json(draw.draw)},
+                    {"pixels", draw.pixels},
+                    {"differing_pixels", draw.differing},
+                    {"largest_difference", draw.largest}});
   }
   return json;
 }
 
-std::string text_of(std::size_t frame, const CapturedCheck& check) {
-  char line[256];
-  std::snprintf(line, sizeof line,
-                "frame %zu: %llu pixels are covered, %.3f %% of them in both; depth within 1e-6: %.3f %%, within 1e-4: "
-                "%.3f %%, largest difference %.3g\n",
-                frame, static_cast<unsigned long long>(check.here + check.there - check.both), 100 * check.coverage(),
-                100 * check.equal_part(), 100 * check.close_part(), check.largest);
-  if (check.draws.empty()) return line;
-  std::vector<std::vector<std::string>> rows = {{"draw", "pixels", "differ", "by up to"}};
-  for (std::size_t i = 0; i < check.draws.size() && i < kShownDraws; ++i) {
-    const DrawDifference& draw = check.draws[i];
-    char largest[32];
-    std::snprintf(largest, sizeof largest, "%.3g", draw.largest);
-    rows.push_back({name_of(draw), std::to_string(draw.pixels), std::to_string(draw.differing), largest});
-  }
-  return line + align_columns(rows, {0});
+Json to_json(const CapturedCheck& check) {
+  return {{"covered_here", check.here},
+          {"covered_in_program", check.there},
+          {"covered_in_both", check.both},
+          {"coverage", check.coverage()},
+          {"depths_within_1e-4", check.close_part()},
+          {"depths_within_1e-6", check.equal_part()},
+          {"largest_difference", check.largest},
+          {"draws", to_json(check.draws)}};
 }
 
+Json to_json(const Technique& technique, const ColorCheck& check) {
+  return {{"technique", technique.spec},
+          {"pixels", check.pixels},
+          {"within_2_codes", check.close_part()},
+          {"largest_difference", check.largest},
+          {"draws", to_json(check.draws)}};
+}
+
+std::string text_of(const std::vector<DrawDifference>& draws) {
+  if (draws.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"draw", "pixels", "differ", "by up to"}};
+  for (std::size_t i = 0; i < draws.size() && i < kShownDraws; ++i) {
+    char largest[32];
+    std::snprintf(largest, sizeof largest, "%.3g", draws[i].largest);
+    rows.push_back({name_of(draws[i]), std::to_string(draws[i].pixels), std::to_string(draws[i].differing), largest});
+  }
+  return align_columns(rows, {0});
+}
+
+std::string text_of(const CapturedCheck& check) {
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "%llu pixels are covered, %.3f %% of them in both; depth within 1e-6: %.3f %%, within 1e-4: %.3f %%, "
+                "largest difference %.3g\n",
+                static_cast<unsigned long long>(check.here + check.there - check.both), 100 * check.coverage(),
+                100 * check.equal_part(), 100 * check.close_part(), check.largest);
+  return line + text_of(check.draws);
+}
+
+std::string text_of(const Technique& technique, const ColorCheck& check) {
+  char line[256];
+  std::snprintf(line, sizeof line, "%s: %.3f %% of %llu pixels within 2/255 in all channels, largest difference %d\n",
+                technique.spec.c_str(), 100 * check.close_part(), static_cast<unsigned long long>(check.pixels),
+                check.largest);
+  return line + text_of(check.draws);
+}
+
+// One frame's check.
+class FrameCheck {
+ public:
+  FrameCheck(const Trace& trace, std::size_t number, const TextureSet& textures, OutputFolder* output)
+      : trace_(trace), number_(number), frame_(trace.frames[number]), textures_(textures), output_(output) {
+    // A pixel's depths, and what is rasterized at a time.
+    require_memory(trace, frame_, 64, "frame " + std::to_string(number), machine_memory());
+    found_ = sampled_depths(trace, without_blending(frame_), &textures);
+    if (frame_.capture.pictures.depth.empty())
+      text_ += name() + "the trace has no captured depth\n";
+    else
+      check_depths();
+    json_["index"] = number;
+    if (frame_.capture.pictures.color) check_picture();
+  }
+
+  const Json& json() const { return json_; }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string name() const { return "frame " + std::to_string(number_) + ": "; }
+
+  void check_depths() {
+    const CapturedCheck check = check_captured(frame_, found_);
+    json_ = to_json(check);
+    text_ += name() + text_of(check);
+    write("depth", difference_picture(frame_, found_));
+  }
+
+  void check_picture() {
+    const Technique technique = technique_of(frame_);
+    FrameInput options;
+    options.memory.modelled = false;
+    options.memory_limit = machine_memory() / 2;
+    options.textures = &textures_;
+    const Image image = technique.render(trace_, number_, options).image;
+    const ColorCheck check = check_colors(trace_, frame_, image, found_.draw);
+    json_["colors"] = to_json(technique, check);
+    text_ += name() + text_of(technique, check);
+    write("colors", color_difference_picture(trace_, frame_, image));
+  }
+
+  void write(const char* what, const std::vector<std::uint8_t>& picture) const {
+    if (output_ == nullptr) return;
+    char file[48];
+    std::snprintf(file, sizeof file, "frame_%04zu_%s.png", number_, what);
+    output_->write(file, encode_png(frame_.width, frame_.height, picture));
+    output_->keep();
+  }
+
+  const Trace& trace_;
+  std::size_t number_;
+  const Frame& frame_;
+  const TextureSet& textures_;
+  OutputFolder* output_;
+  SampledDepths found_;
+  Json json_;
+  std::string text_;
+};
+
 void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
-  Trace trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
-  ignore_blending(trace);
+  const Trace trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   const std::vector<std::size_t> frames = parse_frame_range(arguments.frames, trace.frames.size());
   std::optional<OutputFolder> output;
   if (!arguments.output.empty()) {
     require_writable_folder(arguments.output);
     output.emplace(arguments.output, gate);
   }
-  const std::vector<DrawNote> notes = notes_of(trace, frames);
-  tell_notes(notes);
   const TextureSet textures(trace);
+  const std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs());
+  tell_notes(notes);
   Json json = {{"beampipe_check_capture", 1}, {"trace", arguments.trace}, {"frames", Json::array()}};
   if (!notes.empty()) json["notes"] = notes_form().write(notes);
   std::string text;
   for (const std::size_t i : frames) {
-    const Frame& frame = trace.frames[i];
-    if (frame.capture.pictures.depth.empty()) {
-      text += "frame " + std::to_string(i) + ": the trace has no captured depth\n";
-      continue;
-    }
-    // A pixel's depths, and what is rasterized at a time.
-    require_memory(trace, frame, 64, "frame " + std::to_string(i), machine_memory());
-    const CentreDepths found = centre_depths(trace, frame, &textures);
-    const CapturedCheck check = check_captured(frame, found);
-    json["frames"].push_back(to_json(i, check));
-    text += text_of(i, check);
-    if (!output) continue;
-    char name[48];
-    std::snprintf(name, sizeof name, "frame_%04zu_depth.png", i);
-    output->write(name, encode_png(frame.width, frame.height, difference_picture(frame, found)));
-    output->keep();
+    const FrameCheck check(trace, i, textures, output ? &*output : nullptr);
+    json["frames"].push_back(check.json());
+    text += check.text();
   }
   std::cout << (arguments.json ? json_text(json) : text);
 }
@@ -106,23 +181,26 @@ void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
 
 void add_check_capture_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<CheckArguments>();
-  Command command =
-      line.add_command("check-capture", "Compare the depths of a captured trace with those of the captured program");
+  Command command = line.add_command("check-capture",
+                                     "Compare the depths and pictures of a captured trace with the captured program's");
   command.add("TRACE", arguments->trace, "a trace that was captured from a program, a JSON file").required();
-  command.add("-o,--output", arguments->output, "the folder for pictures of where depths differ");
+  command.add("-o,--output", arguments->output, "the folder for pictures of where depths and colours differ");
   command.add("--frames", arguments->frames,
               "check only frames A-B of the trace, or frame A; the first frame is 0 (default: all)");
   command.add_flag("--json", arguments->json, "print the result as JSON");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.footer(
-      "Draws what writes depth, with one sample at each pixel's centre, and compares it with the depth buffer in the\n"
-      "trace. Prints the share of covered pixels that both cover, the share of those whose depths agree to 1e-6 and "
-      "to\n"
-      "1e-4, and the ten draws with the most pixels that differ by more. In the pictures, green pixels are equal, "
-      "yellow\n"
-      "ones close and red ones different; blue pixels are covered only here, magenta ones only in the program. The "
-      "exit\n"
-      "code is 0 even if depths differ.");
+      "Depth: draws what writes depth, at the first of each pixel's samples, and compares it with the depth buffer in\n"
+      "the trace. Prints the share of covered pixels that both cover, the share of those whose depths agree to 1e-6\n"
+      "and to 1e-4, and the ten draws with the most pixels that differ by more. In the pictures, green pixels are\n"
+      "equal, yellow ones close and red ones different; blue pixels are covered only here, magenta ones only in the\n"
+      "program.\n"
+      "Colour: draws the frame with as many samples as the program had, and compares it with the picture in the "
+      "trace,\n"
+      "as codes of 8 bits. Prints the share of pixels that differ by at most 2 in all channels, and the ten draws "
+      "with\n"
+      "the most that differ by more. The pictures show eight times the difference.\n"
+      "The exit code is 0 even if frames differ.");
   command.set_work([arguments, &gate] { check_capture(*arguments, gate); });
 }
 

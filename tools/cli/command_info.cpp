@@ -75,6 +75,7 @@ std::vector<std::string> attributes_of(const Mesh& mesh) {
   add(mesh.uvs[0], "uv0");
   add(mesh.uvs[1], "uv1");
   add(mesh.vertex_colors, "vertex_colors");
+  add(mesh.varyings, "varyings");
   add(mesh.materials, "materials");
   return names;
 }
@@ -291,7 +292,7 @@ void add_info_command(CommandLine& line) {
     std::iota(frames.begin(), frames.end(), std::size_t{0});
     if (const std::string note = note_on_darkness(trace, frames, arguments->trace); !note.empty())
       std::cerr << "beampipe: " << note << "\n";
-    tell_notes(notes_of(trace, frames));
+    tell_notes(notes_of(trace, frames, ProgramSet(trace)));
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));
   });
 }

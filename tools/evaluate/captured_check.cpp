@@ -35,7 +35,7 @@ struct PixelMatch {
   double difference = 0;
 };
 
-PixelMatch match_at(const CapturedPictures& captured, const CentreDepths& found, std::size_t pixel) {
+PixelMatch match_at(const CapturedPictures& captured, const SampledDepths& found, std::size_t pixel) {
   const bool here = found.draw[pixel] != kNoDraw, there = captured.depth[pixel] != captured.clear_depth;
   if (!here || !there) return {here ? Match::only_here : there ? Match::only_there : Match::nothing};
   const double difference = std::abs(found.depth[pixel] - captured.depth[pixel]);
@@ -45,31 +45,52 @@ PixelMatch match_at(const CapturedPictures& captured, const CentreDepths& found,
           difference};
 }
 
+}  // namespace
+
 double part_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 1.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-}  // namespace
-
-void ignore_blending(Trace& trace) {
-  for (Frame& frame : trace.frames) {
-    for (Draw& draw : frame.draws) {
-      draw.state.color_mask = kAllChannels;
-      draw.state.blend.reset();
-    }
-  }
+DrawDifferences::DrawDifferences(std::size_t draws) : draws_(draws + 1) {
+  for (std::uint32_t i = 0; i < draws; ++i) draws_[i].draw = i;
 }
 
-CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
+void DrawDifferences::add(std::uint32_t draw, bool is_differing, double difference) {
+  DrawDifference& found = draw == kNoDraw ? draws_.back() : draws_.at(draw);
+  ++found.pixels;
+  found.differing += is_differing;
+  found.largest = std::max(found.largest, difference);
+}
+
+std::vector<DrawDifference> DrawDifferences::sorted() const {
+  std::vector<DrawDifference> draws = draws_;
+  std::erase_if(draws, [](const DrawDifference& draw) { return draw.differing == 0; });
+  std::stable_sort(draws.begin(), draws.end(),
+                   [](const DrawDifference& a, const DrawDifference& b) { return a.differing > b.differing; });
+  return draws;
+}
+
+Frame without_blending(Frame frame) {
+  for (Draw& draw : frame.draws) {
+    draw.state.color_mask = kAllChannels;
+    draw.state.blend.reset();
+  }
+  return frame;
+}
+
+SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
   StageCounters ignored;
-  const SetupTriangles triangles = vertex_setup(trace, frame, ignored);
+  SetupTriangles triangles = vertex_setup(trace, frame, ignored);
+  if (textures) without_refused(triangles, frame, textures->programs());
   const SurfaceShader shader(triangles, trace, frame, textures, {});
   const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
   const TileShader whole_shader(shader, whole);
-  const Sampling centre{CellGrid{}, standard_pattern(1)};
-  const SampledTriangles samples{triangles, whole, centre};
+  const Sampling first{CellGrid{}, only(standard_pattern(static_cast<int>(frame.capture.pictures.samples)), 0)};
+  const auto in_pixel = [](std::int32_t place) { return static_cast<float>(place) / kSubpixelUnits; };
+  const glm::vec2 at(in_pixel(first.pattern.x[0]), in_pixel(first.pattern.y[0]));
+  const SampledTriangles samples{triangles, whole, first};
   const std::vector<bool> writers = writers_of(frame);
-  SampleTile surface(whole, centre);
+  SampleTile surface(whole, first);
   std::vector<SampleFragment> fragments;
   std::vector<SampleAccess> accesses;
   TriangleList list;
@@ -77,8 +98,8 @@ CentreDepths centre_depths(const Trace& trace, const Frame& frame, const Texture
     fragments.clear();
     sample_raster(samples, list, ignored, fragments);
     if (!shader.is_flat()) {
-      const std::vector<glm::vec2> centres(fragments.size(), glm::vec2(0.5f));
-      alpha_test(whole_shader, {whole, centre, AlphaCoverage::test, centres}, ignored, fragments);
+      const std::vector<glm::vec2> places(fragments.size(), at);
+      alpha_test(whole_shader, {whole, first, AlphaCoverage::test, places}, ignored, fragments);
     }
     depth_test(samples, fragments, ignored, surface, accesses);
     list.clear();
@@ -89,14 +110,14 @@ CentreDepths centre_depths(const Trace& trace, const Frame& frame, const Texture
   }
   draw_list();
 
-  CentreDepths found{std::vector<double>(whole.pixels()), std::vector<std::uint32_t>(whole.pixels(), kNoDraw)};
+  SampledDepths found{std::vector<double>(whole.pixels()), std::vector<std::uint32_t>(whole.pixels(), kNoDraw)};
   for (std::size_t pixel = 0; pixel < whole.pixels(); ++pixel) {
     const std::uint32_t triangle = surface.triangle[pixel];
     if (triangle == kNoTriangle) continue;
     const std::uint32_t draw = found.draw[pixel] = triangles.draws[triangle];
     const DrawPlacement placement = triangles.placements.empty() ? DrawPlacement{} : triangles.placements[draw];
-    const double x = static_cast<double>(pixel % frame.width) + 0.5, y = static_cast<double>(pixel / frame.width) + 0.5;
-    const double depth = triangles.triangles[triangle].depth.at(x, y);
+    const double x = static_cast<double>(pixel % frame.width), y = static_cast<double>(pixel / frame.width);
+    const double depth = triangles.triangles[triangle].depth.at(x + at.x, y + at.y);
     found.depth[pixel] = std::clamp((depth - placement.window_offset) / placement.window_scale, 0.0, 1.0);
   }
   return found;
@@ -106,13 +127,12 @@ double CapturedCheck::coverage() const { return part_of(both, here + there - bot
 double CapturedCheck::close_part() const { return part_of(close, both); }
 double CapturedCheck::equal_part() const { return part_of(equal, both); }
 
-CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
+CapturedCheck check_captured(const Frame& frame, const SampledDepths& found) {
   const CapturedPictures& captured = frame.capture.pictures;
   if (captured.depth.empty() || captured.depth.size() != found.draw.size())
     throw std::invalid_argument("the frame has no captured depth");
   CapturedCheck check;
-  std::vector<DrawDifference> draws(frame.draws.size() + 1);  // the last one: pixels without a draw
-  for (std::uint32_t i = 0; i < frame.draws.size(); ++i) draws[i].draw = i;
+  DrawDifferences draws(frame.draws.size());
   for (std::size_t pixel = 0; pixel < found.draw.size(); ++pixel) {
     const auto [match, difference] = match_at(captured, found, pixel);
     if (match == Match::nothing) continue;
@@ -121,19 +141,13 @@ CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
     check.equal += match == Match::equal;
     check.close += match == Match::equal || match == Match::close;
     check.largest = std::max(check.largest, difference);
-    DrawDifference& draw = draws[here ? found.draw[pixel] : frame.draws.size()];
-    ++draw.pixels;
-    draw.differing += match != Match::equal && match != Match::close;
-    draw.largest = std::max(draw.largest, difference);
+    draws.add(found.draw[pixel], match != Match::equal && match != Match::close, difference);
   }
-  std::erase_if(draws, [](const DrawDifference& draw) { return draw.differing == 0; });
-  std::stable_sort(draws.begin(), draws.end(),
-                   [](const DrawDifference& a, const DrawDifference& b) { return a.differing > b.differing; });
-  check.draws = std::move(draws);
+  check.draws = draws.sorted();
   return check;
 }
 
-std::vector<std::uint8_t> difference_picture(const Frame& frame, const CentreDepths& found) {
+std::vector<std::uint8_t> difference_picture(const Frame& frame, const SampledDepths& found) {
   using Rgb = std::array<std::uint8_t, 3>;
   constexpr Rgb kColors[] = {{48, 48, 48}, {32, 128, 48}, {224, 200, 32}, {220, 40, 32}, {48, 96, 240}, {224, 48, 224}};
   std::vector<std::uint8_t> picture;

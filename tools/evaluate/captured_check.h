@@ -1,5 +1,5 @@
-// The depths that a frame's draws leave at the pixels' centres, compared with those that the captured program's depth
-// buffer held (Frame::capture.pictures.depth).
+// The depths that a frame's draws leave at the pixels' first samples, compared with those that the captured program's
+// depth buffer held there (Frame::capture.pictures.depth).
 //
 // A frame without errors of its own may differ from the program where draws were left out, and by the roundings of the
 // program's depth format.
@@ -16,26 +16,40 @@ namespace beampipe {
 inline constexpr std::uint32_t kNoDraw = ~0u;
 
 // One value per pixel, row by row.
-struct CentreDepths {
+struct SampledDepths {
   std::vector<double> depth;        // window depth, 0..1; where nothing was drawn: any
   std::vector<std::uint32_t> draw;  // index into Frame::draws, or kNoDraw
 };
 
-// Makes every draw write its colours as they are, so that none is left out for what it does with colours, such as draws
-// that write only depth. Depths stay.
-void ignore_blending(Trace& trace);
+// The frame with draws that all write their colours as they are, so that none is left out for what it does with
+// colours, such as draws that write only depth. Depths stay.
+Frame without_blending(Frame frame);
 
-// Draws what writes depth after the last depth clear, with one sample at each pixel's centre. Cutouts are tested there.
+// Draws what writes depth after the last depth clear, at the first of as many samples as the program had: with one, at
+// the pixel's centre. Cutouts are tested there.
 // `textures`: of the trace; may be null if the frame's draws have none.
-CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);
+SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);
 
-// How the depths of one draw's pixels differ. kNoDraw: pixels where only the program drew something.
+// How one draw's pixels differ. kNoDraw: pixels that no draw has here.
 struct DrawDifference {
   std::uint32_t draw = kNoDraw;
-  std::uint64_t pixels = 0;     // that it covers here
-  std::uint64_t differing = 0;  // of these: farther than kClose from the program's depth
+  std::uint64_t pixels = 0;     // that it has here
+  std::uint64_t differing = 0;  // of these: not close to the program's
   double largest = 0;           // difference
 };
+
+// Gathers them pixel by pixel.
+class DrawDifferences {
+ public:
+  explicit DrawDifferences(std::size_t draws);
+  void add(std::uint32_t draw, bool is_differing, double difference);
+  std::vector<DrawDifference> sorted() const;  // those that differ, the one with most differing pixels first
+
+ private:
+  std::vector<DrawDifference> draws_;  // the last one: pixels without a draw
+};
+
+double part_of(std::uint64_t part, std::uint64_t whole);  // part / whole; 1 if both are 0
 
 struct CapturedCheck {
   static constexpr double kClose = 1e-4, kEqual = 1e-6;  // window depth
@@ -51,10 +65,10 @@ struct CapturedCheck {
 };
 
 // Throws std::invalid_argument unless the frame has a captured depth for each pixel.
-CapturedCheck check_captured(const Frame& frame, const CentreDepths& found);
+CapturedCheck check_captured(const Frame& frame, const SampledDepths& found);
 
 // RGB, three bytes per pixel. Grey: nothing. Green: equal. Yellow: close. Red: farther. Blue: only here. Magenta: only
 // in the program.
-std::vector<std::uint8_t> difference_picture(const Frame& frame, const CentreDepths& found);
+std::vector<std::uint8_t> difference_picture(const Frame& frame, const SampledDepths& found);
 
 }  // namespace beampipe

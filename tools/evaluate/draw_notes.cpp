@@ -1,16 +1,31 @@
 #include "tools/evaluate/draw_notes.h"
 
+#include <algorithm>
 #include <iostream>
 
 #include "stages/geometry/draw_plan.h"
 
 namespace beampipe {
 
-std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames) {
+std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs) {
   std::vector<DrawNote> notes;
-  for (const std::size_t frame : frames)
+  for (const std::size_t frame : frames) {
     for (const DrawNote& note : plan_draws(trace, trace.frames[frame]).notes)
       add_note(notes, note.reason, note.left_out, note.draws, note.triangles);
+    for (const Draw& draw : trace.frames[frame].draws) {
+      if (!draw.program) continue;
+      const auto note = [&](const std::string& reason) {
+        add_note(notes, reason, false, 1, trace.meshes[draw.mesh].triangles.size());
+      };
+      const std::uint32_t number = draw.program->program;
+      const LaneProgram* const program = programs.find(number);
+      if (!program)
+        note("in one grey, as shader " + in_quotes(trace.programs[number].name) +
+             " cannot run: " + programs.error(number));
+      else if (std::ranges::any_of(program->outputs, [](const InterfaceRow& row) { return row.location == kNoRow; }))
+        note("shaders set depth or coverage, which stay those of the triangle");
+    }
+  }
   return notes;
 }
 

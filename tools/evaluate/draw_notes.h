@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "stages/geometry/draw_notes.h"
+#include "stages/surface/program_set.h"
 #include "traces/files/json_form.h"
 #include "traces/trace.h"
 
 namespace beampipe {
 
-// One note for each reason. A draw counts in each frame that has it. `frames`: indices into the trace.
-std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames);
+// One note for each reason. A draw counts in each frame that has it. `frames`: indices into the trace. `programs`: of
+// the trace.
+std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs);
 
 // "12 draws (340 triangles) are left out: stencil test"
 std::string text_of(const DrawNote& note);

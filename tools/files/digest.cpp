@@ -48,6 +48,16 @@ class Digest {
   boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc_;
 };
 
+void add(const ProgramUse& use, Digest& digest) {
+  digest.add_all(use.program, use.push_constants);
+  for (const BoundBuffer& each : use.buffers) digest.add_all(each.set, each.binding, each.element, each.bytes);
+  for (const BoundImage& each : use.images) {
+    digest.add_all(each.set, each.binding, each.element, each.image, each.sampler, each.base_level, each.base_layer,
+                   each.levels, each.layers);
+    digest.add_bytes(each.swizzle.data(), each.swizzle.size());
+  }
+}
+
 }  // namespace
 
 std::string digest_of(std::string_view bytes) {
@@ -65,13 +75,23 @@ std::string digest_of(const Trace& trace) {
                    material.emissive, material.emissive_texture, material.alpha_mode, material.alpha_cutoff,
                    material.double_sided, material.unlit);
   }
+  for (const ShaderProgram& program : trace.programs)
+    digest.add_all(program.spirv, program.specialization, program.inputs);
+  for (const ProgramImage& image : trace.program_images)
+    digest.add_all(image.shape, image.format, image.width, image.height, image.depth, image.layers, image.array,
+                   image.levels, image.texels);
+  for (const ProgramSampler& sampler : trace.program_samplers)
+    digest.add_all(sampler.mag, sampler.min, sampler.mip, sampler.wrap, sampler.lod_bias, sampler.least_lod,
+                   sampler.most_lod, sampler.anisotropy, sampler.compare, sampler.border, sampler.unnormalized);
   for (const Mesh& mesh : trace.meshes) {
     digest.add_all(mesh.positions, mesh.ws, mesh.triangles, mesh.colors, mesh.materials, mesh.normals, mesh.tangents,
                    mesh.uvs[0], mesh.uvs[1], mesh.vertex_colors);
+    if (!mesh.varyings.empty()) digest.add(mesh.varyings);
   }
   for (const Frame& frame : trace.frames) {
     digest.add_all(frame.width, frame.height, frame.background, frame.view, frame.projection, frame.lighting.lights,
                    frame.lighting.ambient, frame.draws.size());
+    if (frame.target != ColorTarget::srgb) digest.add(frame.target);
     for (const Draw& draw : frame.draws) {
       const DrawState& state = draw.state;
       const DepthState& depth = state.depth;
@@ -80,6 +100,7 @@ std::string digest_of(const Trace& trace) {
                      state.stencil);
       digest.add_all(depth.test, depth.write, depth.function, depth.near, depth.far, depth.bias, depth.clip,
                      depth.cleared_before);
+      if (draw.program) add(*draw.program, digest);
     }
   }
   return digest.text();

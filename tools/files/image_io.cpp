@@ -16,6 +16,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "traces/srgb.h"
+
 namespace beampipe {
 namespace {
 
@@ -174,8 +176,7 @@ void read_all(Imf::InputFile& input, const Imf::FrameBuffer& channels, Size size
 
 std::uint8_t srgb_byte(float linear) {
   const double clamped = linear > 0.0f ? std::min(static_cast<double>(linear), 1.0) : 0.0;  // NaN becomes 0
-  const double encoded = clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
+  return static_cast<std::uint8_t>(std::lround(255.0 * encoded_as_srgb(clamped)));
 }
 
 std::string encode_exr(const Image& image, const Labels& labels) {

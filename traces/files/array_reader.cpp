@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "traces/files/base64.h"
 #include "traces/files/input_file.h"
 #include "traces/files/side_file.h"
 #include "traces/material.h"
@@ -18,8 +19,8 @@ static_assert(std::endian::native == std::endian::little, "buffers are little-en
 
 namespace {
 
-enum class NumberType { float32, uint32, uint16, srgb8 };
-constexpr std::uint64_t kTypeBytes[] = {4, 4, 2, 1};
+enum class NumberType { float32, uint32, uint16, uint8, srgb8 };
+constexpr std::uint64_t kTypeBytes[] = {4, 4, 2, 1, 1};
 
 constexpr float kMostFloat = std::numeric_limits<float>::max();
 constexpr const char* kReal = "a number in a float's range";
@@ -56,7 +57,7 @@ struct ViewKeys {
   double offset = 0, count = 0;
   NumberType type{};
 };
-constexpr std::string_view kTypeNames[] = {"float32", "uint32", "uint16", "srgb8"};
+constexpr std::string_view kTypeNames[] = {"float32", "uint32", "uint16", "uint8", "srgb8"};
 const Form<ViewKeys>& view_form() {
   static const Form<ViewKeys> form =
       ObjectForm<ViewKeys>()
@@ -66,7 +67,8 @@ const Form<ViewKeys>& view_form() {
           .required("count", &ViewKeys::count, form::number(),
                     "How many numbers there are: three for a position, and so on.")
           .required("type", &ViewKeys::type, form::choice<NumberType>(kTypeNames),
-                    "float32; uint32 and uint16 for integers; srgb8 for colours: 8 bits each, RGB encoded as sRGB and "
+                    "float32; uint32 and uint16 for integers; uint8 for bytes; srgb8 for colours: 8 bits each, RGB "
+                    "encoded as sRGB and "
                     "opacity linear.");
   return form;
 }
@@ -121,10 +123,10 @@ struct ArrayReader::View {
     return result;
   }
 
-  std::vector<std::uint32_t> integers(std::uint32_t below) const {
-    expect_type({NumberType::uint32, NumberType::uint16}, "\"uint32\" or \"uint16\"");
+  // Bits of floats or integers.
+  std::vector<std::uint32_t> words() const {
     std::vector<std::uint32_t> result(count);
-    if (type == NumberType::uint32) {
+    if (type != NumberType::uint16) {
       if (!bytes.empty()) std::memcpy(result.data(), bytes.data(), bytes.size());
     } else {
       for (std::uint64_t i = 0; i < count; ++i) {
@@ -133,6 +135,12 @@ struct ArrayReader::View {
         result[i] = value;
       }
     }
+    return result;
+  }
+
+  std::vector<std::uint32_t> integers(std::uint32_t below) const {
+    expect_type({NumberType::uint32, NumberType::uint16}, "\"uint32\" or \"uint16\"");
+    const std::vector<std::uint32_t> result = words();
     for (std::uint64_t i = 0; i < count; ++i)
       if (result[i] >= below) fail("integers below " + std::to_string(below), std::to_string(result[i]), i);
     return result;
@@ -141,8 +149,14 @@ struct ArrayReader::View {
 
 Json buffers_schema() { return {{"type", "object"}, {"additionalProperties", buffer_form().schema}}; }
 
-Json numbers_schema(const Json& number) {
-  return {{"oneOf", Json::array({{{"type", "array"}, {"items", number}}, view_form().schema})}};
+Json numbers_schema(const Json& number, bool as_text) {
+  Json forms = Json::array({{{"type", "array"}, {"items", number}}, view_form().schema});
+  if (as_text) forms.push_back({{"type", "string"}, {"contentEncoding", "base64"}});
+  return {{"oneOf", forms}};
+}
+
+Json bytes_schema() {
+  return {{"oneOf", Json::array({{{"type", "string"}, {"contentEncoding", "base64"}}, view_form().schema})}};
 }
 
 ArrayReader::ArrayReader(const JsonCursor& at, const std::filesystem::path& trace_file, const ReadOptions& options) {
@@ -241,6 +255,62 @@ std::vector<std::uint32_t> ArrayReader::integers(const JsonCursor& at, std::uint
   std::vector<std::uint32_t> result;
   for (const JsonCursor& number : at.elements()) result.push_back(number.integer(0, below - 1));
   return result;
+}
+
+namespace {
+
+std::string inline_bytes(const JsonCursor& at) {
+  std::optional<std::string> bytes = from_base64(at.string());
+  if (!bytes) at.fail("base64 text");
+  return std::move(*bytes);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> ArrayReader::bytes(const JsonCursor& at) const {
+  if (!at.is_object()) {
+    const std::string bytes = inline_bytes(at);
+    return {bytes.begin(), bytes.end()};
+  }
+  const View of_bytes = view(at, 1);
+  of_bytes.expect_type({NumberType::uint8}, "\"uint8\"");
+  return {of_bytes.bytes.begin(), of_bytes.bytes.end()};
+}
+
+template <class ReadElement>
+std::vector<std::uint32_t> ArrayReader::words(const JsonCursor& at, bool may_be_floats,
+                                              ReadElement read_element) const {
+  std::vector<std::uint32_t> result;
+  if (at.is_object()) {
+    const View of_words = view(at, 1);
+    if (may_be_floats && of_words.type == NumberType::float32)
+      of_words.floats<float>(kReal, [](float value) { return std::isfinite(value); });
+    else
+      of_words.expect_type({NumberType::uint32, NumberType::uint16},
+                           may_be_floats ? "\"float32\", \"uint32\" or \"uint16\"" : "\"uint32\" or \"uint16\"");
+    return of_words.words();
+  }
+  if (at.is_array()) {
+    for (const JsonCursor& element : at.elements()) result.push_back(read_element(element));
+    return result;
+  }
+  if (!at.is_string()) at.fail("an array, base64 text or a view of a buffer");
+  const std::string bytes = inline_bytes(at);
+  if (bytes.size() % sizeof(std::uint32_t) != 0)
+    at.fail("base64 text of whole words of 4 bytes", std::to_string(bytes.size()) + " bytes");
+  result.resize(bytes.size() / sizeof(std::uint32_t));
+  if (!bytes.empty()) std::memcpy(result.data(), bytes.data(), bytes.size());
+  return result;
+}
+
+std::vector<std::uint32_t> ArrayReader::words(const JsonCursor& at) const {
+  return words(at, false, [](const JsonCursor& element) { return element.integer(0, ~0u); });
+}
+
+std::vector<std::uint32_t> ArrayReader::bits(const JsonCursor& at) const {
+  return words(at, true, [](const JsonCursor& element) {
+    return std::bit_cast<std::uint32_t>(element.real(-kMostFloat, kMostFloat));
+  });
 }
 
 }  // namespace beampipe

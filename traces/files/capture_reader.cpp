@@ -1,11 +1,13 @@
 #include "traces/files/capture_reader.h"
 
+#include <bit>
 #include <limits>
 
 namespace beampipe {
 namespace {
 
 constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kMostSamples = 16;  // whose places are a standard
 
 std::string size_text(std::uint32_t width, std::uint32_t height) {
   return std::to_string(width) + " x " + std::to_string(height);
@@ -54,7 +56,12 @@ Form<Frame> captured_form(const std::vector<TextureImage>& images, const NameInd
             numbers_schema(form::number().schema), read_depth})
       .optional(
           "clear_depth", [](auto& frame) -> auto& { return frame.capture.pictures.clear_depth; }, form::fraction(),
-          "The window depth where nothing was drawn.");
+          "The window depth where nothing was drawn.")
+      .add({"samples", "How many samples of each pixel the program drew: 1, 2, 4, 8 or 16; 1 when left out.", false,
+            form::integer(1, kMostSamples).schema, [](const JsonCursor& at, Frame& frame) {
+              frame.capture.pictures.samples = at.integer(1, kMostSamples);
+              if (!std::has_single_bit(frame.capture.pictures.samples)) at.fail("1, 2, 4, 8 or 16");
+            }});
 }
 
 }  // namespace

@@ -67,6 +67,7 @@ void write_capture_record(TraceText& text, const CaptureRecord& record, const Tr
     text.put_numbers("", record.pictures.depth);
   }
   text.put_member("clear_depth", record.pictures.clear_depth, 1.0f);
+  text.put_member("samples", record.pictures.samples, 1u);
   text.close_object();
 }
 

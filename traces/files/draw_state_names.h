@@ -18,7 +18,10 @@ inline constexpr std::string_view kBlendFactorNames[] = {"zero",
                                                          "destination_alpha",
                                                          "one_minus_destination_alpha",
                                                          "source_alpha_saturate",
-                                                         "constant"};
+                                                         "constant",
+                                                         "one_minus_constant",
+                                                         "constant_alpha",
+                                                         "one_minus_constant_alpha"};
 inline constexpr std::string_view kBlendOperationNames[] = {"add", "subtract", "reverse_subtract", "min", "max"};
 inline constexpr std::string_view kStencilOperationNames[] = {
     "keep", "zero", "replace", "increment", "decrement", "invert", "increment_wrap", "decrement_wrap"};

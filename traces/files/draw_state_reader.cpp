@@ -56,13 +56,34 @@ Form<DepthBias> bias_form() {
                 "The largest bias, or the least if negative; 0 is no limit.");
 }
 
-Form<Blend> blend_form() {
+// `equation`: of an object that has the equation's keys, the equation.
+template <class Object, class Equation>
+ObjectForm<Object> equation_form(Equation equation) {
   const Form<BlendFactor> factor = form::choice<BlendFactor>(kBlendFactorNames);
-  return ObjectForm<Blend>()
-      .required("source", &Blend::source, factor, "Factor of the fragment's colour.")
-      .required("destination", &Blend::destination, factor, "Factor of the stored colour.")
-      .optional("operation", &Blend::operation, form::choice<BlendOperation>(kBlendOperationNames),
-                "What is done with the two.");
+  return ObjectForm<Object>()
+      .required(
+          "source", [equation](auto& object) -> auto& { return equation(object).source; }, factor,
+          "Factor of what the fragment has.")
+      .required(
+          "destination", [equation](auto& object) -> auto& { return equation(object).destination; }, factor,
+          "Factor of what is stored.")
+      .optional(
+          "operation", [equation](auto& object) -> auto& { return equation(object).operation; },
+          form::choice<BlendOperation>(kBlendOperationNames), "What is done with the two.");
+}
+
+Form<Blend> blend_form() {
+  const Form<BlendEquation> alpha = equation_form<BlendEquation>([](auto& equation) -> auto& { return equation; });
+  const Form<glm::vec4> constant = {form::array_schema(form::fraction().schema, 4),
+                                    [](const JsonCursor& at, glm::vec4& value) {
+                                      const std::vector<JsonCursor> elements = at.elements();
+                                      if (elements.size() != 4) at.fail("an array of 4 numbers");
+                                      for (int i = 0; i < 4; ++i)
+                                        value[i] = static_cast<float>(elements[static_cast<std::size_t>(i)].fraction());
+                                    }};
+  return equation_form<Blend>([](auto& blend) -> auto& { return blend.color; })
+      .optional("alpha", &Blend::alpha, alpha, "The equation of opacity, where it is not that of the colours.")
+      .optional("constant", &Blend::constant, constant, "RGBA of constant factors.");
 }
 
 Form<Stencil> stencil_form() {

@@ -14,12 +14,23 @@ void write_bias(TraceText& text, const DepthBias& bias) {
   text.close_object();
 }
 
-void write_blend(TraceText& text, const Blend& blend) {
-  text.put_key("blend");
-  text.open_object();
+void write_equation(TraceText& text, const BlendEquation& blend) {
   text.put_name_of("source", blend.source, kBlendFactorNames);
   text.put_name_of("destination", blend.destination, kBlendFactorNames);
   text.put_choice("operation", blend.operation, BlendOperation::add, kBlendOperationNames);
+}
+
+void write_blend(TraceText& text, const Blend& blend) {
+  text.put_key("blend");
+  text.open_object();
+  write_equation(text, blend.color);
+  if (blend.alpha) {
+    text.put_key("alpha");
+    text.open_object();
+    write_equation(text, *blend.alpha);
+    text.close_object();
+  }
+  text.put_member("constant", blend.constant, glm::vec4(0.0f));
   text.close_object();
 }
 

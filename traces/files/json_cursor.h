@@ -38,6 +38,8 @@ class JsonCursor {
 
   bool is_null() const { return value_->is_null(); }
   bool is_object() const { return value_->is_object(); }
+  bool is_array() const { return value_->is_array(); }
+  bool is_string() const { return value_->is_string(); }
   double number() const;
   double number(double low, double high) const;          // low..high
   double number_between(double low, double high) const;  // low < number < high

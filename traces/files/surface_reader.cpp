@@ -3,8 +3,8 @@
 #include "traces/files/base64.h"
 #include "traces/files/image_file.h"
 #include "traces/files/input_file.h"
+#include "traces/files/material_names.h"
 #include "traces/files/side_file.h"
-#include "traces/files/surface_names.h"
 
 namespace beampipe {
 namespace {

@@ -8,6 +8,7 @@
 #include "traces/files/draw_state_reader.h"
 #include "traces/files/json_cursor.h"
 #include "traces/files/model_import.h"
+#include "traces/files/program_reader.h"
 #include "traces/files/side_file.h"
 #include "traces/files/surface_reader.h"
 #include "traces/files/trace_io.h"
@@ -164,6 +165,11 @@ ObjectForm<Mesh> inline_mesh_form(const Reader& reader) {
                    "Linear r, g, b and opacity, which is at most 1, for each vertex; multiplied by the material's base "
                    "colour.",
                    amount, &ArrayReader::rgbas, vertex_colors}))
+      .add({"varyings",
+            "What the programs of draws read, for each vertex: numbers in the order of the program's `inputs`. Bits of "
+            "integers are in base64 or in a view.",
+            false, numbers_schema(number, true),
+            [&arrays](const JsonCursor& at, Mesh& result) { result.varyings = arrays.bits(at); }})
       .add({"materials",
             "The names of the `materials` that the mesh uses; null stands for flat triangles with `colors`. A single "
             "one is that of all triangles.",
@@ -316,7 +322,13 @@ Form<Draw> draw_form(const Reader& reader) {
                 "The name of one of `materials`, in place of the mesh's own; not together with `kd`.")
       .optional("state", &Draw::state, draw_state_form(),
                 "The fixed-function state of a draw, as OpenGL and Vulkan know it.")
+      .optional("program", &Draw::program, program_use_form(reader.arrays, reader.trace),
+                "The program's own fragment shader and what it reads; not together with `kd` or `material`.")
       .check([&reader](const JsonCursor& at, const Draw& result) {
+        if (result.program) {
+          if (result.kd || result.material) at.fail("\"program\" without \"kd\" and \"material\"", "both");
+          expect_varyings(at["program"], reader.trace, result);
+        }
         if (!result.material) return;
         if (result.kd) at.fail("either \"kd\" or \"material\"", "both");
         expect_uvs(at["material"], reader.trace.materials[*result.material], reader.trace.meshes[result.mesh]);
@@ -352,7 +364,12 @@ Form<Frame> frame_form(const Reader& reader) {
   add_lighting(frame, reader.version);
   frame.add({"draws", "What is drawn, in this order; may be empty.", true, form::list(draw).schema,
              [draw, &reader](const JsonCursor& at, Frame& result) { read_draws(at, draw, reader, result); }});
-  if (reader.version > 1) add_capture(frame, reader.trace.images, reader.images, reader.arrays);
+  if (reader.version > 1) {
+    frame.optional("target", &Frame::target, color_target_form(),
+                   "What is stored of what programs' shaders return: srgb: its code as sRGB; unorm: the number itself, "
+                   "which is the picture's code divided by 255.");
+    add_capture(frame, reader.trace.images, reader.images, reader.arrays);
+  }
   return frame.check(
       [version = reader.version](const JsonCursor& at, Frame& result) { read_view(at, version, result); });
 }
@@ -385,6 +402,19 @@ Form<Reader> trace_form(Reader& reader) {
                 each.trace.images = images(at);
                 each.images = index_of(each.trace.images);
               }});
+    const Form<std::vector<ProgramImage>> program_images = program_images_form(reader.arrays);
+    const Form<std::vector<ProgramSampler>> program_samplers = program_samplers_form();
+    const Form<std::vector<ShaderProgram>> programs = programs_form(reader.arrays);
+    form.add({"program_images", "Images that the programs of draws read.", false, program_images.schema,
+              [program_images](const JsonCursor& at, Reader& each) {
+                program_images.read(at, each.trace.program_images);
+              }})
+        .add({"program_samplers", "How the programs of draws read images.", false, program_samplers.schema,
+              [program_samplers](const JsonCursor& at, Reader& each) {
+                program_samplers.read(at, each.trace.program_samplers);
+              }})
+        .add({"programs", "Fragment shaders of the program that was captured.", false, programs.schema,
+              [programs](const JsonCursor& at, Reader& each) { programs.read(at, each.trace.programs); }});
     const Form<std::vector<Material>> materials = materials_form(reader.images);
     form.add({"materials",
               "What surfaces are made of, by the names that meshes and draws use: glTF 2.0's metallic-roughness model. "

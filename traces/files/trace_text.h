@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "traces/files/atomic_file.h"
+#include "traces/files/base64.h"
 #include "traces/files/json.h"
 #include "traces/files/trace_io.h"
 
@@ -126,14 +127,40 @@ class TraceText {
     }
   }
 
+  // Bytes, and words of 32 bits, as base64 or in the binary file.
+  void put_bytes(const std::vector<std::uint8_t>& bytes) {
+    if (arrays_)
+      put_view(bytes.data(), bytes.size());
+    else
+      put_base64(bytes.data(), bytes.size());
+  }
+  void put_words(const std::vector<std::uint32_t>& words) {
+    if (arrays_)
+      put_view(words.data(), words.size());
+    else
+      put_base64(words.data(), words.size() * sizeof(std::uint32_t));
+  }
+
+  // Bits of floats, all of which are finite, or of anything.
+  void put_bits(const std::vector<std::uint32_t>& bits) {
+    std::vector<float> floats(bits.size());
+    if (!bits.empty()) std::memcpy(floats.data(), bits.data(), bits.size() * sizeof(float));
+    if (std::all_of(floats.begin(), floats.end(), [](float value) { return std::isfinite(value); }))
+      put_numbers("", floats);
+    else
+      put_words(bits);
+  }
+
   // Integers take 16 bits where these are enough.
   template <typename Number>
   void put_view(const Number* numbers, std::size_t count) {
-    constexpr bool kIsFloat = std::is_same_v<Number, float>;
-    const bool is_short = !kIsFloat && std::all_of(numbers, numbers + count, [](Number n) { return n <= 0xffff; });
+    constexpr bool kIsFloat = std::is_same_v<Number, float>, kIsByte = sizeof(Number) == 1;
+    const bool is_short =
+        !kIsFloat && !kIsByte && std::all_of(numbers, numbers + count, [](Number n) { return n <= 0xffff; });
     put("{\"buffer\": \"" + std::string(kBuffer) + "\", \"offset\": " + std::to_string(arrays_->bytes) +
         ", \"count\": " + std::to_string(count) + ", \"type\": \"" +
         (kIsFloat   ? "float32"
+         : kIsByte  ? "uint8"
          : is_short ? "uint16"
                     : "uint32") +
         "\"}");
@@ -232,6 +259,10 @@ class TraceText {
   }
 
  private:
+  void put_base64(const void* bytes, std::size_t count) {
+    put("\"" + to_base64({static_cast<const char*>(bytes), count}) + "\"");
+  }
+
   static constexpr std::size_t kChunk = 1 << 20;    // bytes that are written at once
   static constexpr const char* kBuffer = "arrays";  // the name of the binary file in the trace
 

@@ -9,7 +9,9 @@
 #include "traces/files/capture_writer.h"
 #include "traces/files/draw_state_writer.h"
 #include "traces/files/image_file.h"
-#include "traces/files/surface_names.h"
+#include "traces/files/material_names.h"
+#include "traces/files/program_names.h"
+#include "traces/files/program_writer.h"
 #include "traces/files/trace_text.h"
 #include "traces/unit_vector.h"
 
@@ -18,14 +20,15 @@ namespace {
 
 bool needs_version_2(const Mesh& mesh) {
   return !mesh.ws.empty() || !mesh.materials.empty() || !mesh.normals.empty() || !mesh.tangents.empty() ||
-         !mesh.uvs[0].empty() || !mesh.uvs[1].empty() || !mesh.vertex_colors.empty();
+         !mesh.uvs[0].empty() || !mesh.uvs[1].empty() || !mesh.vertex_colors.empty() || !mesh.varyings.empty();
 }
 
 bool needs_version_2(const Frame& frame) {
   const auto& [lights, ambient] = frame.lighting;
   return lights.size() > 1 || (lights.size() == 1 && lights[0].color != glm::vec3(1.0f)) || ambient ||
-         frame.capture != CaptureRecord{} || std::ranges::any_of(frame.draws, [](const Draw& draw) {
-           return draw.material.has_value() || draw.state != DrawState{};
+         frame.capture != CaptureRecord{} || frame.target != ColorTarget::srgb ||
+         std::ranges::any_of(frame.draws, [](const Draw& draw) {
+           return draw.material.has_value() || draw.state != DrawState{} || draw.program.has_value();
          });
 }
 
@@ -35,7 +38,8 @@ int version_of(const Trace& trace, ArrayStorage storage) {
     return std::ranges::any_of(items, [](const auto& item) { return needs_version_2(item); });
   };
   const bool needs_2 = storage == ArrayStorage::binary || trace.source || !trace.images.empty() ||
-                       !trace.materials.empty() || any(trace.meshes) || any(trace.frames);
+                       !trace.materials.empty() || !trace.program_images.empty() || !trace.program_samplers.empty() ||
+                       !trace.programs.empty() || any(trace.meshes) || any(trace.frames);
   return needs_2 ? 2 : 1;
 }
 
@@ -53,6 +57,7 @@ class TraceWriter : TraceText {
       list(trace.images, [&](const TextureImage& image) { write_image(image); });
       put("}");
     }
+    write_programs(*this, trace);
     if (!trace.materials.empty()) {
       put(",\n\"materials\": {");
       list(trace.materials, [&](const Material& material) { write_material(material, trace.images); });
@@ -92,8 +97,17 @@ class TraceWriter : TraceText {
         if (draw.mesh >= trace.meshes.size()) fail("a draw names no mesh");
         if (draw.material && *draw.material >= trace.materials.size()) fail("a draw names no material");
         if (draw.material && draw.kd) fail("a draw has both kd and a material");
+        if (draw.program) check_program(draw, trace);
       }
     }
+  }
+
+  void check_program(const Draw& draw, const Trace& trace) const {
+    if (draw.program->program >= trace.programs.size()) fail("a draw names no program");
+    if (draw.material || draw.kd) fail("a draw has both a program and kd or a material");
+    const Mesh& mesh = trace.meshes[draw.mesh];
+    if (mesh.varyings.size() != varyings_of(trace.programs[draw.program->program]) * mesh.positions.size())
+      fail("mesh " + in_quotes(mesh.name) + " lacks varyings of a program that draws it");
   }
 
   template <class Item>
@@ -186,6 +200,10 @@ class TraceWriter : TraceText {
     if (!mesh.uvs[0].empty()) put_numbers(",\n\"uv0\": ", mesh.uvs[0]);
     if (!mesh.uvs[1].empty()) put_numbers(",\n\"uv1\": ", mesh.uvs[1]);
     if (!mesh.vertex_colors.empty()) put_numbers(",\n\"vertex_colors\": ", mesh.vertex_colors);
+    if (!mesh.varyings.empty()) {
+      put(",\n\"varyings\": ");
+      put_bits(mesh.varyings);
+    }
     if (!mesh.materials.empty()) write_materials_of(mesh, materials);
     put("}");
   }
@@ -216,6 +234,11 @@ class TraceWriter : TraceText {
     } else {
       put_array(",\n\"view\": ", frame.view);
       put_array(",\n\"projection\": ", frame.projection);
+    }
+    if (frame.target != ColorTarget::srgb) {
+      put(",\n\"target\": \"");
+      put(kColorTargetNames[static_cast<std::size_t>(frame.target)]);
+      put("\"");
     }
     version_ == 1 ? write_light(frame.lighting) : write_lighting(frame.lighting);
     put(",\n\"draws\": [");
@@ -273,6 +296,7 @@ class TraceWriter : TraceText {
       put_name("a material", trace.materials[*draw.material].name);
     }
     if (draw.state != DrawState{}) write_draw_state(*this, draw.state);
+    if (draw.program) write_program_use(*this, *draw.program, trace);
     put("}");
   }
 

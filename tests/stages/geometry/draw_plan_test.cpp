@@ -61,7 +61,7 @@ TEST(DrawPlan, StateThatSaysWhatHoldsAnywayChangesNothing) {
   draw.state.viewport = Viewport{0, 0, 16, 16};
   draw.state.scissor = Scissor{-3, 0, 40, 16};
   draw.state.stencil = Stencil{};
-  draw.state.blend = Blend{BlendFactor::one, BlendFactor::zero};
+  draw.state.blend = Blend{{BlendFactor::one, BlendFactor::zero}};
   const DrawPlan plan = draws.plan();
   ASSERT_EQ(plan.placements.size(), 1u);
   EXPECT_EQ(plan.placements[0], DrawPlacement{});

@@ -2,6 +2,7 @@
 #include "tools/evaluate/captured_check.h"
 
 #include "tests/test.h"
+#include "tools/evaluate/captured_colors.h"
 #include "tools/evaluate/draw_notes.h"
 #include "traces/files/trace_io.h"
 
@@ -33,7 +34,7 @@ Trace empty_trace() {
 }
 
 CapturedCheck check(const Trace& trace) {
-  return check_captured(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
+  return check_captured(trace.frames[0], sampled_depths(trace, trace.frames[0], nullptr));
 }
 
 TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
@@ -43,7 +44,7 @@ TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
   DepthState untested;
   untested.test = false;
   add_quad(trace, {0, 0}, {8, 8}, 0.125f, untested);  // writes no depth
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
       const std::size_t pixel = y * kSize + x;
@@ -58,9 +59,19 @@ TEST(CapturedCheck, ReversedDepthIsWindowDepthToo) {
   Trace trace = empty_trace();
   add_quad(trace, {0, 0}, {8, 8}, 0.25f, {.function = Compare::greater});
   add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.function = Compare::greater});
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   EXPECT_NEAR(found.depth[0], 0.75, 1e-12);
   EXPECT_NEAR(found.depth[kSize - 1], 0.25, 1e-12);
+}
+
+// Of four samples the first is 6/16 px from the left and 2/16 px from the top.
+TEST(CapturedCheck, LooksAtTheFirstSample) {
+  Trace trace = empty_trace();
+  trace.frames[0].capture.pictures.samples = 4;
+  add_quad(trace, {0, 0}, {8, 8}, 0.5f);
+  std::vector<glm::vec3>& corners = trace.meshes[0].positions;
+  corners[1].z = corners[2].z = 0.5f;  // window depth 0.5 at the left and 0.75 at the right
+  EXPECT_NEAR(sampled_depths(trace, trace.frames[0], nullptr).depth[0], 0.5 + 0.25 * 0.375 / kSize, 1e-9);
 }
 
 // Only what is drawn after the last clear is in the program's depth buffer at the end.
@@ -68,7 +79,7 @@ TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   Trace trace = empty_trace();
   add_quad(trace, {0, 0}, {8, 8}, 0.5f);
   add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.cleared_before = true});
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   EXPECT_EQ(found.draw[0], 1u);
   EXPECT_NEAR(found.depth[0], 0.75, 1e-6);  // a group in front, or behind, keeps fewer bits
   EXPECT_EQ(found.draw[kSize - 1], kNoDraw);
@@ -81,12 +92,11 @@ TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   add_quad(trace, {4, 0}, {8, 8}, 0.25f);
   std::vector<Draw>& draws = trace.frames[0].draws;
   draws[0].state.color_mask = 0;
-  draws[1].state.blend = Blend{BlendFactor::source_alpha, BlendFactor::one, BlendOperation::add};
+  draws[1].state.blend = Blend{{BlendFactor::source_alpha, BlendFactor::one}};
   trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
   draws[1].material = 0;
-  EXPECT_EQ(centre_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
-  ignore_blending(trace);
-  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  EXPECT_EQ(sampled_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
+  const SampledDepths found = sampled_depths(trace, without_blending(trace.frames[0]), nullptr);
   EXPECT_EQ(found.draw[0], 0u);
   EXPECT_NEAR(found.depth[0], 0.5, 1e-12);
   EXPECT_EQ(found.draw[kSize - 1], 1u);
@@ -123,7 +133,7 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
   EXPECT_EQ(found.draws[2].draw, 0u);
   EXPECT_EQ(found.draws[2].differing, 1u);
   const std::vector<std::uint8_t> picture =
-      difference_picture(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
+      difference_picture(trace.frames[0], sampled_depths(trace, trace.frames[0], nullptr));
   ASSERT_EQ(picture.size(), 3 * 64u);
   EXPECT_NE(picture[0], picture[3]);
 }
@@ -131,10 +141,14 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
 // A program of six draws, with instances, a depth bias, a scissor and draws without depth test.
 TEST(CapturedCheck, AgreesWithTheCapturedSample) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/captured_quads.json");
-  const CapturedCheck found = check(trace);
+  const TextureSet textures(trace);
+  const SampledDepths depths = sampled_depths(trace, without_blending(trace.frames[0]), &textures);
+  const CapturedCheck found = check_captured(trace.frames[0], depths);
   EXPECT_GT(found.there, 3000u);
   EXPECT_GE(found.coverage(), 0.999);
   EXPECT_GE(found.close_part(), 0.999);
+  const Image image = parse_technique("msaa:1").render(trace, 0).image;
+  EXPECT_GE(check_colors(trace, trace.frames[0], image, depths.draw).close_part(), 0.999);
 }
 
 TEST(CapturedCheck, NeedsACapturedDepth) {
@@ -155,8 +169,8 @@ TEST(DrawNotes, OfSeveralFramesAreAddedUp) {
   add_quad(trace, {0, 0}, {8, 8}, 0.5f);
   trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::equal};
   trace.frames.push_back(trace.frames[0]);
-  EXPECT_EQ(notes_of(trace, {0, 1}), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));
-  EXPECT_EQ(notes_of(trace, {1}), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
+  EXPECT_EQ(notes_of(trace, {0, 1}, ProgramSet(trace)), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));
+  EXPECT_EQ(notes_of(trace, {1}, ProgramSet(trace)), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
 }
 
 }  // namespace beampipe::captured_check_test

@@ -1,4 +1,4 @@
-// How traces name the items of textures and materials, in the order of the enumerators.
+// How traces name what materials and their textures have, in the order of the enumerators.
 #pragma once
 
 #include <string_view>

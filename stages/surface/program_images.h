@@ -1,0 +1,52 @@
+// How programs' own shaders read images: texels, filters and mip levels.
+//
+// Source: Khronos Group, Vulkan 1.3 Specification, chapter "Image Operations". Filter weights are not rounded. With
+// anisotropy, the mean of as many trilinear samples as it says lies along the longer side of the footprint. Comparisons
+// clamp their reference to 0..1, as those of fixed-point depths do. A gather reads level 0 of the view.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "stages/spirv/image_reader.h"
+#include "stages/spirv/lane_program.h"
+#include "traces/program.h"
+
+namespace beampipe {
+
+// An image as a draw binds it. Without an image, all reads give 0.
+struct ImageView {
+  const ProgramImage* image = nullptr;
+  const ProgramSampler* sampler = nullptr;  // of the image itself
+  std::uint32_t base_level = 0, levels = 0, base_layer = 0, layers = 0;
+  std::array<char, 4> swizzle{'r', 'g', 'b', 'a'};
+  std::vector<std::uint64_t> level_starts{};  // of the image, in bytes
+};
+
+// What a draw binds for its shader, by LaneProgram::images and samplers, and there by element.
+struct BoundImages {
+  std::vector<std::vector<ImageView>> images;
+  std::vector<std::vector<const ProgramSampler*>> samplers;
+};
+BoundImages bound_images(const LaneProgram& program, const std::vector<BoundImage>& bound,
+                         const std::vector<ProgramImage>& images, const std::vector<ProgramSampler>& samplers);
+
+class ProgramImages : public ImageReader {
+ public:
+  // Both must outlive it. `counted`: lanes whose texels are counted.
+  ProgramImages(const LaneProgram& program, const BoundImages& bound, std::uint64_t counted)
+      : program_(program), bound_(bound), counted_(counted) {}
+
+  void read(const ImageRequest& request, const std::array<LaneRow*, 4>& texel) override;
+
+  std::uint64_t texels() const { return texels_; }  // one for each time that one was read
+
+ private:
+  const LaneProgram& program_;
+  const BoundImages& bound_;
+  std::uint64_t counted_;
+  std::uint64_t texels_ = 0;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,108 @@
+// Runs the fragment shaders of draws with a program, with what each draw binds.
+//
+// Inputs come from Mesh::varyings, of the triangle's planes. Derivatives are per pixel, whatever part of it a colour
+// stands for: differences between a pixel and its neighbours in a 2x2 quad, or between a place and those one pixel to
+// the right and below, from the planes. These two are helper invocations, which cost as much as others.
+//
+// Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point, and
+// all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "stages/cost/counters.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/surface/program_images.h"
+#include "stages/surface/program_set.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// Where a program runs.
+struct ProgramPlace {
+  std::uint32_t triangle = 0;
+  std::int32_t x = 0, y = 0;       // the pixel
+  float u = 0.5f, v = 0.5f;        // in it
+  bool in_quad = false;            // derivatives are those of its quad
+  bool stays_in_triangle = false;  // inputs are those of the nearest point of the triangle, about
+  bool is_there = false;           // who asks knows that the surface is there, or near it in the pixel
+};
+
+class ProgramShader {
+ public:
+  // All must outlive it. `programs`: of the trace; may be null if no draw has one.
+  ProgramShader(const SetupTriangles& triangles, const Trace& trace, const Frame& frame, const ProgramSet* programs);
+
+  AlphaMode alpha_mode(std::uint32_t draw) const { return draws_[draw].mode; }
+
+  // Sets the colour of each place; alpha is 1 unless the draw is blended, and 0 where the shader discards. A place that
+  // is_there then has the colour of one that is not discarded, a quarter of a pixel away, if there is one. The places
+  // lie in triangles of one draw. Returns how many texels their invocations read, without helpers.
+  std::uint64_t shade(std::span<const ProgramPlace> places, glm::vec4* colors) const;
+
+  // What an invocation costs, helpers of its own left out: the mean over places in up to 16 of the draw's triangles,
+  // which is exact where control flow is the same everywhere. `helpers`: how many it needs.
+  struct Cost {
+    OperationCounts ops{};
+    std::uint32_t helpers = 0;
+    std::uint64_t input_bytes = 0;  // of the vertices
+  };
+  const Cost& cost(std::uint32_t draw) const { return draws_[draw].cost; }
+
+  bool reads_images(std::uint32_t draw) const { return !draws_[draw].program->images.empty(); }
+
+ private:
+  struct Input {
+    enum class Kind { varying, frag_coord, front_facing, helper, primitive, half, zero };
+    std::uint32_t row = 0;
+    Kind kind = Kind::zero;
+    std::uint32_t number = 0;  // of the varying in its vertex, or the component
+    InputInterpolation interpolation = InputInterpolation::smooth;
+  };
+  struct BoundDraw {
+    const LaneProgram* program = nullptr;
+    std::uint32_t number = 0;  // of the program
+    const Mesh* mesh = nullptr;
+    AlphaMode mode = AlphaMode::opaque;
+    std::size_t stride = 0;  // varyings of a vertex
+    std::vector<Input> inputs;
+    std::array<std::uint32_t, 4> outputs{};
+    ShaderResources resources{};
+    BoundImages images{};
+    glm::dvec4 to_w{};  // clip w of a position
+    Cost cost{};
+  };
+  struct Lane {
+    std::size_t number;
+    float x, y;  // pixels
+  };
+  // Lanes in which differences are taken, and the numbers of the places that they stand for.
+  struct Group {
+    static constexpr std::uint32_t kNone = ~0u;
+    std::array<std::uint32_t, 4> places{kNone, kNone, kNone, kNone};
+  };
+
+  BoundDraw bind(const Draw& draw) const;
+  static std::vector<Group> grouped(const LaneProgram& program, std::span<const ProgramPlace> places);
+  void set_inputs(const BoundDraw& draw, const ProgramPlace& place, std::span<const Lane> lanes, std::uint64_t helpers,
+                  ShaderExecutor& executor) const;
+  std::uint64_t shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors) const;
+  std::uint64_t run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
+                    glm::vec4* colors, ShaderCounts& counts) const;
+  Cost measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const;
+
+  const SetupTriangles& triangles_;
+  const Trace& trace_;
+  const Frame& frame_;
+  const ProgramSet* programs_;
+  std::vector<BoundDraw> draws_;
+};
+
+// Triangles of draws whose program cannot run become flat, in a middle grey.
+const SetupTriangles& without_refused(SetupTriangles& triangles, const Frame& frame, const ProgramSet& programs);
+
+}  // namespace beampipe

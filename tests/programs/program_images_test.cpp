@@ -1,0 +1,293 @@
+// How programs' shaders read images, against numbers worked out by hand from the Vulkan specification.
+#include "stages/surface/program_images.h"
+
+#include "tests/programs/program_traces.h"
+
+namespace beampipe::program_images_test {
+
+std::vector<std::uint8_t> bytes_of(const std::vector<float>& numbers) {
+  std::vector<std::uint8_t> bytes(numbers.size() * sizeof(float));
+  if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return bytes;
+}
+
+// Texel n of all levels together is n.
+ProgramImage numbered(ImageShape shape, std::uint32_t width, std::uint32_t height = 1, std::uint32_t depth = 1,
+                      std::uint32_t layers = 1, std::uint32_t levels = 1, bool is_array = false) {
+  ProgramImage image{.name = "numbers", .shape = shape, .format = TexelFormat::R32_SFLOAT, .texels = {}};
+  image.width = width, image.height = height, image.depth = depth;
+  image.layers = layers, image.levels = levels, image.array = is_array;
+  std::vector<float> numbers(level_start(image, levels) / sizeof(float));
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i);
+  image.texels = bytes_of(numbers);
+  return image;
+}
+
+spv::Dim dim_of(ImageShape shape) {
+  return shape == ImageShape::d1     ? spv::Dim1D
+         : shape == ImageShape::d3   ? spv::Dim3D
+         : shape == ImageShape::cube ? spv::DimCube
+                                     : spv::Dim2D;
+}
+
+// What an invocation asks; missing numbers are left out.
+struct Question {
+  ImageAction action = ImageAction::sample;
+  std::vector<float> at{};
+  std::vector<int> texel{};  // of a fetch, in place of `at`
+  std::vector<float> dx{}, dy{};
+  std::vector<int> offset{};
+  std::optional<float> lod{}, bias{}, least_lod{}, reference{};
+  std::optional<int> level{};  // of a fetch or a query, in place of `lod`
+  std::uint32_t component = 0;
+};
+
+class Reader {
+ public:
+  explicit Reader(ProgramImage image, ProgramSampler sampler = {}) : images_{std::move(image)}, samplers_{sampler} {
+    program_.images.push_back(
+        {.set = 0, .binding = 0, .dim = dim_of(images_[0].shape), .arrayed = images_[0].array, .has_sampler = true});
+  }
+
+  ProgramSampler& sampler() { return samplers_[0]; }
+  BoundImage& view() { return view_; }
+  std::uint64_t texels() const { return texels_; }
+
+  std::array<std::uint32_t, 4> bits(const Question& question) {
+    const BoundImages bound = bound_images(program_, {view_}, images_, samplers_);
+    ProgramImages reader(program_, bound, ~std::uint64_t{0});
+    std::vector<std::unique_ptr<LaneRow>> rows;
+    const auto row = [&](std::uint32_t value) {
+      rows.push_back(std::make_unique<LaneRow>());
+      rows.back()->bits.fill(value);
+      return rows.back().get();
+    };
+    const auto number = [&](float value) { return row(std::bit_cast<std::uint32_t>(value)); };
+    const auto integer = [&](int value) { return row(static_cast<std::uint32_t>(value)); };
+    ImageRequest request{.action = question.action, .component = question.component, .lanes = 1};
+    for (std::size_t i = 0; i < question.at.size(); ++i) request.coordinates[i] = number(question.at[i]);
+    for (std::size_t i = 0; i < question.texel.size(); ++i) request.coordinates[i] = integer(question.texel[i]);
+    for (std::size_t i = 0; i < question.dx.size(); ++i) request.dx[i] = number(question.dx[i]);
+    for (std::size_t i = 0; i < question.dy.size(); ++i) request.dy[i] = number(question.dy[i]);
+    for (std::size_t i = 0; i < question.offset.size(); ++i) request.offset[i] = integer(question.offset[i]);
+    if (question.lod) request.lod = number(*question.lod);
+    if (question.level) request.lod = integer(*question.level);
+    if (question.bias) request.bias = number(*question.bias);
+    if (question.least_lod) request.least_lod = number(*question.least_lod);
+    if (question.reference) request.reference = number(*question.reference);
+    request.active = row(~0u);
+    std::array<LaneRow, 4> texel;
+    reader.read(request, {&texel[0], &texel[1], &texel[2], &texel[3]});
+    texels_ = reader.texels();
+    return {texel[0].bits[0], texel[1].bits[0], texel[2].bits[0], texel[3].bits[0]};
+  }
+  std::array<float, 4> numbers(const Question& question) { return std::bit_cast<std::array<float, 4>>(bits(question)); }
+  float operator()(const Question& question) { return numbers(question)[0]; }
+
+ private:
+  LaneProgram program_;
+  std::vector<ProgramImage> images_;
+  std::vector<ProgramSampler> samplers_;
+  BoundImage view_{.set = 0, .binding = 0, .image = 0, .sampler = 0};
+  std::uint64_t texels_ = 0;
+};
+
+ProgramSampler nearest(SamplerWrap wrap = SamplerWrap::repeat) {
+  return {.mag = Filter::nearest, .min = Filter::nearest, .mip = Filter::nearest, .wrap = {wrap, wrap, wrap}};
+}
+ProgramSampler linear(SamplerWrap wrap = SamplerWrap::clamp_to_edge) { return {.wrap = {wrap, wrap, wrap}}; }
+
+TEST(ProgramImages, WrapsAtEdges) {
+  // Texels -5 .. 8 of a row of 4.
+  const std::pair<SamplerWrap, std::vector<float>> cases[] = {
+      {SamplerWrap::repeat, {3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0}},
+      {SamplerWrap::mirror, {3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0, 0}},
+      {SamplerWrap::clamp_to_edge, {0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3}},
+      {SamplerWrap::clamp_to_border, {7, 7, 7, 7, 7, 0, 1, 2, 3, 7, 7, 7, 7, 7}},
+      {SamplerWrap::mirror_clamp, {3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3}}};
+  for (const auto& [wrap, expected] : cases) {
+    Reader reader(numbered(ImageShape::d1, 4), nearest(wrap));
+    reader.sampler().border = glm::vec4(7, 8, 9, 10);
+    for (int i = 0; i < 14; ++i)
+      EXPECT_EQ(reader({.at = {(static_cast<float>(i - 5) + 0.5f) / 4}}), expected[static_cast<std::size_t>(i)])
+          << static_cast<int>(wrap) << " texel " << i - 5;
+  }
+}
+
+TEST(ProgramImages, LinearFiltersMixNeighbours) {
+  Reader line(numbered(ImageShape::d1, 4), linear());
+  EXPECT_EQ(line({.at = {0.5f}}), 1.5f);
+  EXPECT_EQ(line({.at = {0.4375f}}), 1.25f);
+  EXPECT_EQ(line({.at = {0.01f}}), 0.0f);
+  EXPECT_EQ(line({.at = {0.4375f}, .offset = {1}}), 2.25f);
+  EXPECT_EQ(line.texels(), 2u);
+  Reader plane(numbered(ImageShape::d2, 4, 4), linear());
+  EXPECT_EQ(plane({.at = {0.4375f, 0.5f}}), 1.25f + 4 * 1.5f);
+  EXPECT_EQ(plane.texels(), 4u);
+  Reader volume(numbered(ImageShape::d3, 4, 4, 4), linear());
+  EXPECT_EQ(volume({.at = {0.4375f, 0.5f, 0.5f}}), 1.25f + 4 * 1.5f + 16 * 1.5f);
+  EXPECT_EQ(volume.texels(), 8u);
+  Reader layers(numbered(ImageShape::d2, 2, 2, 1, 3, 1, true), nearest());
+  EXPECT_EQ(layers({.at = {0, 0, 1.4f}}), 4);
+  EXPECT_EQ(layers({.at = {0, 0, 9}}), 8);
+  EXPECT_EQ(layers({.at = {0, 0, -2}}), 0);
+  Reader unnormalized(numbered(ImageShape::d2, 4, 4), {.unnormalized = true});
+  EXPECT_EQ(unnormalized({.at = {1.5f, 2.5f}}), 9);
+}
+
+// Levels of 4, 2 and 1 texels start at 0, 4 and 6. The log2 of texels per pixel chooses.
+TEST(ProgramImages, DetailComesFromDerivatives) {
+  Reader reader(numbered(ImageShape::d1, 4, 1, 1, 1, 3), nearest());
+  const auto at_texels_per_pixel = [&](float texels) {
+    return reader({.at = {0.1f}, .dx = {texels / 4}, .dy = {0.0f}});
+  };
+  EXPECT_EQ(at_texels_per_pixel(0.1f), 0);
+  EXPECT_EQ(at_texels_per_pixel(1.41f), 0);
+  EXPECT_EQ(at_texels_per_pixel(1.42f), 4);
+  EXPECT_EQ(at_texels_per_pixel(2.82f), 4);
+  EXPECT_EQ(at_texels_per_pixel(2.84f), 6);
+  EXPECT_EQ(at_texels_per_pixel(1000), 6);
+  EXPECT_EQ(at_texels_per_pixel(0), 0);
+  EXPECT_EQ(reader({.at = {0.1f}, .dx = {0}, .dy = {-0.5f}}), 4);  // the longer side
+  EXPECT_EQ(reader({.at = {0.1f}, .dx = {0.25f}, .dy = {0}, .bias = 1.0f}), 4);
+  EXPECT_EQ(reader({.at = {0.1f}, .lod = 1.0f}), 4);
+  EXPECT_EQ(reader({.at = {0.1f}, .dx = {0}, .dy = {0}, .least_lod = 2.0f}), 6);
+  reader.sampler().lod_bias = 1;
+  EXPECT_EQ(at_texels_per_pixel(1), 4);
+  reader.sampler().most_lod = 0.2f;
+  EXPECT_EQ(at_texels_per_pixel(1), 0);
+  reader.sampler() = nearest();
+  reader.sampler().mip = Filter::linear;
+  EXPECT_EQ(reader({.at = {0.1f}, .lod = 0.25f}), 1);  // a quarter of 4
+  EXPECT_EQ(reader({.at = {0.9f}, .lod = 1.5f}), 5.5f);
+  reader.view().base_level = 1;
+  EXPECT_EQ(reader({.at = {0.1f}, .lod = 0.0f}), 4);
+  // The view begins with level 1. Of 2 texels one pixel is 0.5.
+  const std::array<float, 4> asked =
+      reader.numbers({.action = ImageAction::query_lod, .at = {0.1f}, .dx = {4.0f}, .dy = {0.0f}});
+  EXPECT_EQ(asked[0], 1);
+  EXPECT_EQ(asked[1], 3);
+}
+
+// Three texels along x and none along y. Three samples on the longer side are each taken at level 0.
+TEST(ProgramImages, AnisotropyTakesSamplesAlongTheLongerSide) {
+  Reader reader(numbered(ImageShape::d2, 16, 16, 1, 1, 5), linear(SamplerWrap::repeat));
+  const Question question{.at = {0.5f, 0.53125f}, .dx = {3.0f / 16, 0}, .dy = {0, 1.0f / 16}};
+  reader.sampler().anisotropy = 16;
+  EXPECT_FLOAT_EQ(reader(question), 8 * 16 + 7.5f);
+  EXPECT_EQ(reader.texels(), 3 * 4u);
+  reader.sampler().anisotropy = 1;
+  reader(question);
+  EXPECT_EQ(reader.texels(), 8u);  // of two levels
+}
+
+// Each face has its number, and its texels grow by 0.1 along s and by 1 along t.
+TEST(ProgramImages, CubesHaveSixFaces) {
+  ProgramImage image = numbered(ImageShape::cube, 2, 2, 1, 6);
+  Reader reader(image, nearest());
+  // Face 0 is +x, with s along -z and t along -y: texels 4 face + 2 t + s.
+  const std::pair<std::vector<float>, float> cases[] = {
+      {{1, 0.5f, 0.5f}, 0},     {{1, 0.5f, -0.5f}, 1},  {{1, -0.5f, 0.5f}, 2},  {{-1, 0.5f, -0.5f}, 4},
+      {{-1, 0.5f, 0.5f}, 5},    {{-0.5f, 1, -0.5f}, 8}, {{-0.5f, 1, 0.5f}, 10}, {{-0.5f, -1, 0.5f}, 12},
+      {{-0.5f, -1, -0.5f}, 14}, {{-0.5f, 0.5f, 1}, 16}, {{0.5f, 0.5f, 1}, 17},  {{0.5f, 0.5f, -1}, 20},
+      {{-0.5f, 0.5f, -1}, 21},  {{1, 1, 1}, 17},        {{-0.5f, 2, 2}, 16}};
+  for (const auto& [direction, expected] : cases)
+    EXPECT_EQ(reader({.at = direction}), expected) << direction[0] << ' ' << direction[1] << ' ' << direction[2];
+  // On the edge between +x and +z, in the middle of the upper half: half of texel 0 (+x) and half of texel 17 (+z).
+  reader.sampler() = linear();
+  EXPECT_NEAR(reader({.at = {1, 0.5f, 0.99999f}}), 0.5f * 0 + 0.5f * 17, 1e-3);
+  EXPECT_NEAR(reader({.at = {0.99999f, 0.5f, 1}}), 0.5f * 0 + 0.5f * 17, 1e-3);
+  // At the corner, the three texels that meet there: 0 of +x, 11 of +y and 17 of +z.
+  EXPECT_NEAR(reader({.at = {1, 0.99999f, 0.99999f}}), 28 / 3.0f, 1e-3);
+}
+
+TEST(ProgramImages, GathersAndFetches) {
+  Reader reader(numbered(ImageShape::d2, 4, 4, 1, 1, 3), linear());
+  // Around texels 5, 6, 9 and 10: lower left, lower right, upper right, upper left.
+  EXPECT_EQ(reader.numbers({.action = ImageAction::gather, .at = {0.5f, 0.5f}}), (std::array<float, 4>{9, 10, 6, 5}));
+  EXPECT_EQ(reader.numbers({.action = ImageAction::gather, .at = {0.5f, 0.5f}, .component = 3}),
+            (std::array<float, 4>{1, 1, 1, 1}));
+  const auto fetch = [&](std::vector<int> texel, int level, std::vector<int> offset = {}) {
+    return reader(
+        {.action = ImageAction::fetch, .texel = std::move(texel), .offset = std::move(offset), .level = level});
+  };
+  EXPECT_EQ(fetch({3, 2}, 0), 11);
+  EXPECT_EQ(fetch({2, 2}, 0, {1, -1}), 7);
+  EXPECT_EQ(fetch({1, 0}, 1), 17);
+  EXPECT_EQ(fetch({0, 0}, 2), 20);
+  EXPECT_EQ(fetch({0, 0}, 3), 0);  // outside
+  EXPECT_EQ(fetch({2, 0}, 1), 0);
+  EXPECT_EQ(fetch({-1, 0}, 0), 0);
+}
+
+TEST(ProgramImages, SizesAreTold) {
+  Reader cube(numbered(ImageShape::cube, 4, 4, 1, 12, 3, true));
+  EXPECT_EQ(cube.bits({.action = ImageAction::query_size, .level = 1}), (std::array<std::uint32_t, 4>{2, 2, 2, 0}));
+  EXPECT_EQ(cube.bits({.action = ImageAction::query_levels})[0], 3u);
+  Reader volume(numbered(ImageShape::d3, 8, 4, 2, 1, 4));
+  EXPECT_EQ(volume.bits({.action = ImageAction::query_size, .level = 2}), (std::array<std::uint32_t, 4>{2, 1, 1, 0}));
+  EXPECT_EQ(volume.bits({.action = ImageAction::query_samples})[0], 1u);
+}
+
+TEST(ProgramImages, DepthsAreComparedBeforeTheyAreFiltered) {
+  ProgramImage image{.name = "depths",
+                     .shape = ImageShape::d2,
+                     .format = TexelFormat::D32_SFLOAT,
+                     .width = 2,
+                     .height = 1,
+                     .texels = {}};
+  image.texels = bytes_of({0.25f, 0.75f});
+  Reader reader(image, linear());
+  reader.sampler().compare = Compare::less_equal;
+  const auto lit = [&](float u, float reference) { return reader({.at = {u, 0.5f}, .reference = reference}); };
+  EXPECT_EQ(lit(0.25f, 0.25f), 1);
+  EXPECT_EQ(lit(0.25f, 0.5f), 0);
+  EXPECT_EQ(lit(0.5f, 0.5f), 0.5f);
+  EXPECT_EQ(lit(0.625f, 0.5f), 0.75f);
+  EXPECT_EQ(lit(0.75f, 7), 0);
+  reader.sampler().compare = Compare::greater;
+  EXPECT_EQ(lit(0.625f, 0.5f), 0.25f);
+}
+
+TEST(ProgramImages, FormatsAreDecoded) {
+  const auto texel = [](TexelFormat format, std::vector<std::uint8_t> bytes) {
+    ProgramImage image{
+        .name = "texel", .shape = ImageShape::d2, .format = format, .width = 1, .height = 1, .texels = {}};
+    image.texels = std::move(bytes);
+    return Reader(image, nearest()).numbers({.at = {0, 0}});
+  };
+  using Texel = std::array<float, 4>;
+  EXPECT_EQ(texel(TexelFormat::R8_UNORM, {51}), (Texel{0.2f, 0, 0, 1}));
+  EXPECT_EQ(texel(TexelFormat::R8G8_UNORM, {51, 255}), (Texel{0.2f, 1, 0, 1}));
+  EXPECT_EQ(texel(TexelFormat::R8G8B8A8_UNORM, {51, 102, 255, 0}), (Texel{0.2f, 0.4f, 1, 0}));
+  EXPECT_EQ(texel(TexelFormat::B8G8R8A8_UNORM, {51, 102, 255, 0}), (Texel{1, 0.4f, 0.2f, 0}));
+  const float grey = static_cast<float>(linear_of_srgb(102.0 / 255));
+  EXPECT_EQ(texel(TexelFormat::R8G8B8A8_SRGB, {0, 102, 255, 102}), (Texel{0, grey, 1, 0.4f}));
+  EXPECT_EQ(texel(TexelFormat::B8G8R8A8_SRGB, {0, 102, 255, 102}), (Texel{1, grey, 0, 0.4f}));
+  EXPECT_EQ(texel(TexelFormat::R16_SFLOAT, {0, 0x3e}), (Texel{1.5f, 0, 0, 1}));
+  EXPECT_EQ(texel(TexelFormat::R16G16_SFLOAT, {0, 0x3e, 0, 0xc0}), (Texel{1.5f, -2, 0, 1}));
+  EXPECT_EQ(texel(TexelFormat::R16G16B16A16_SFLOAT, {0, 0x3e, 0, 0xc0, 1, 0, 0, 0x3c}), (Texel{1.5f, -2, 0x1p-24f, 1}));
+  EXPECT_EQ(texel(TexelFormat::R16G16B16A16_UNORM, {0xff, 0xff, 0x33, 0x33, 0, 0, 0xff, 0xff}), (Texel{1, 0.2f, 0, 1}));
+  EXPECT_EQ(texel(TexelFormat::R32_SFLOAT, bytes_of({-3.5f})), (Texel{-3.5f, 0, 0, 1}));
+  EXPECT_EQ(texel(TexelFormat::R32G32B32A32_SFLOAT, bytes_of({1, 2, 3, 4})), (Texel{1, 2, 3, 4}));
+  ProgramImage integers{.name = "n",
+                        .shape = ImageShape::d2,
+                        .format = TexelFormat::R32G32B32A32_SINT,
+                        .width = 1,
+                        .height = 1,
+                        .texels = {}};
+  integers.texels = {255, 255, 255, 255, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 128};
+  EXPECT_EQ(Reader(integers).bits({.at = {0, 0}}), (std::array<std::uint32_t, 4>{~0u, 1, 256, 0x80000000u}));
+}
+
+TEST(ProgramImages, AnyNumberIsSafe) {
+  Reader reader(numbered(ImageShape::d2, 4, 4, 1, 1, 3), linear(SamplerWrap::mirror));
+  for (const float value : {NAN, INFINITY, -INFINITY, 1e38f, -1e38f})
+    for (const float slope : {0.0f, NAN, INFINITY, 1e38f})
+      reader({.at = {value, value}, .dx = {slope, slope}, .dy = {slope, value}, .offset = {1 << 30, -(1 << 30)}});
+  Reader cube(numbered(ImageShape::cube, 4, 4, 1, 6, 3), linear());
+  for (const float value : {0.0f, NAN, INFINITY, -INFINITY, 1e38f})
+    cube({.at = {value, 0, value}, .dx = {value, 0, 1}, .dy = {NAN, value, 0}});
+}
+
+}  // namespace beampipe::program_images_test

@@ -1,0 +1,288 @@
+// Each instruction of arithmetic against the same formula in C++, on numbers of all kinds.
+#include "stages/data/half_bits.h"
+#include "tests/stages/spirv/shader_text.h"
+
+namespace beampipe {
+namespace {
+
+// What a lane's component has as inputs.
+struct Inputs {
+  float a, b, c;
+  std::uint32_t i, j, k;
+};
+
+// Runs the body, which sets %r, 4 floats or integers, from %va, %vb, %vc, %vi, %vj and %vk, and compares every
+// component with the formula.
+template <class Result, class Formula>
+void expect_each(const std::string& body, Formula&& formula, const std::string& globals = "", float tolerance = 0) {
+  SCOPED_TRACE(body);
+  constexpr bool is_float = std::is_same_v<Result, float>;
+  TestShader shader(
+      ShaderParts{.body = body + (is_float ? "\nOpStore %out %r\n" : "\nOpStore %iout %r\n"), .globals = globals});
+  std::mt19937 random(7);
+  for (int round = 0; round < 8; ++round) {
+    std::vector<Inputs> inputs;
+    for (std::size_t n = 0; n < 4 * kShaderLanes; ++n) {
+      const auto component = static_cast<std::uint32_t>(n % 4);
+      const Inputs in{any_float(random, n / 4),   any_float(random, n / 4 + 3),   any_float(random, n / 4 + 5),
+                      any_integer(random, n / 4), any_integer(random, n / 4 + 1), any_integer(random, n / 4 + 2)};
+      shader.set(0, component, n / 4, in.a), shader.set(1, component, n / 4, in.b),
+          shader.set(2, component, n / 4, in.c);
+      shader.set_integer(3, component, n / 4, in.i), shader.set_integer(4, component, n / 4, in.j);
+      shader.set_integer(5, component, n / 4, in.k);
+      inputs.push_back(in);
+    }
+    ASSERT_TRUE(shader.run());
+    for (std::size_t n = 0; n < inputs.size(); ++n) {
+      const Inputs& in = inputs[n];
+      const Result expected = formula(in);
+      if constexpr (is_float) {
+        const float found = shader.number(n % 4, n / 4);
+        if (std::isnan(expected)) {
+          EXPECT_TRUE(std::isnan(found)) << in.a << " " << in.b << " " << in.c;
+        } else if (tolerance == 0 || std::isinf(expected)) {
+          EXPECT_EQ(std::bit_cast<std::uint32_t>(found), std::bit_cast<std::uint32_t>(expected))
+              << in.a << " " << in.b << " " << in.c << " " << in.i << " " << in.j << ": " << found << " not "
+              << expected;
+        } else {
+          EXPECT_NEAR(found, expected, tolerance * std::fabs(expected)) << in.a << " " << in.b << " " << in.c;
+        }
+      } else {
+        EXPECT_EQ(shader.integer(n % 4, n / 4), static_cast<std::uint32_t>(expected))
+            << in.a << " " << in.b << " " << in.i << " " << in.j << " " << in.k;
+      }
+      if (::testing::Test::HasFailure()) return;
+    }
+  }
+}
+template <class Formula>
+void floats(const std::string& body, Formula&& formula, const std::string& globals = "") {
+  expect_each<float>(body, formula, globals);
+}
+template <class Formula>
+void integers(const std::string& body, Formula&& formula, const std::string& globals = "") {
+  expect_each<std::uint32_t>(body, formula, globals);
+}
+// A comparison: 1 or 0.
+template <class Formula>
+void comparison(const std::string& body, Formula&& formula) {
+  integers(body + "\n%r = OpSelect %u4 %t %u1111 %u0000", [&](const Inputs& in) { return formula(in) ? 1u : 0u; });
+}
+
+std::int32_t s(std::uint32_t x) { return static_cast<std::int32_t>(x); }
+
+TEST(SpirvArithmetic, FloatsAsInCpp) {
+  floats("%r = OpFAdd %v4 %va %vb", [](const Inputs& in) { return in.a + in.b; });
+  floats("%r = OpFSub %v4 %va %vb", [](const Inputs& in) { return in.a - in.b; });
+  floats("%r = OpFMul %v4 %va %vb", [](const Inputs& in) { return in.a * in.b; });
+  floats("%r = OpFDiv %v4 %va %vb", [](const Inputs& in) { return in.a / in.b; });
+  floats("%r = OpFNegate %v4 %va", [](const Inputs& in) { return -in.a; });
+  floats("%r = OpFMod %v4 %va %vb", [](const Inputs& in) { return in.a - in.b * std::floor(in.a / in.b); });
+  floats("%r = OpFRem %v4 %va %vb", [](const Inputs& in) { return in.a - in.b * std::trunc(in.a / in.b); });
+  // A product and a sum are rounded one after the other.
+  floats("%p = OpFMul %v4 %va %vb\n%r = OpFAdd %v4 %p %vc", [](const Inputs& in) {
+    volatile float product = in.a * in.b;
+    return product + in.c;
+  });
+}
+
+TEST(SpirvArithmetic, ComparisonsAsInCpp) {
+  comparison("%t = OpFOrdEqual %b4 %va %vb", [](const Inputs& in) { return in.a == in.b; });
+  comparison("%t = OpFOrdNotEqual %b4 %va %vb", [](const Inputs& in) { return in.a != in.b; });
+  comparison("%t = OpFOrdLessThan %b4 %va %vb", [](const Inputs& in) { return in.a < in.b; });
+  comparison("%t = OpFOrdLessThanEqual %b4 %va %vb", [](const Inputs& in) { return in.a <= in.b; });
+  comparison("%t = OpFOrdGreaterThan %b4 %va %vb", [](const Inputs& in) { return in.a > in.b; });
+  comparison("%t = OpFOrdGreaterThanEqual %b4 %va %vb", [](const Inputs& in) { return in.a >= in.b; });
+  // Of what is no number: 0 / 0 and x.
+  const std::string nan = "%n = OpFDiv %v4 %f0000 %f0000\n%m = OpSelect %v4 %which %n %va\n";
+  const std::string which = "%which = OpULessThan %b4 %vi %vj\n" + nan;
+  const auto is_nan = [](const Inputs& in) { return in.i < in.j; };
+  comparison(which + "%t = OpFOrdNotEqual %b4 %m %vb", [&](const Inputs& in) { return !is_nan(in) && in.a != in.b; });
+  comparison(which + "%t = OpFUnordNotEqual %b4 %m %vb", [&](const Inputs& in) { return is_nan(in) || in.a != in.b; });
+  comparison(which + "%t = OpFUnordEqual %b4 %m %vb", [&](const Inputs& in) { return is_nan(in) || in.a == in.b; });
+  comparison(which + "%t = OpFUnordLessThan %b4 %m %vb", [&](const Inputs& in) { return is_nan(in) || in.a < in.b; });
+  comparison(which + "%t = OpFUnordLessThanEqual %b4 %m %vb",
+             [&](const Inputs& in) { return is_nan(in) || in.a <= in.b; });
+  comparison(which + "%t = OpFUnordGreaterThan %b4 %m %vb",
+             [&](const Inputs& in) { return is_nan(in) || in.a > in.b; });
+  comparison(which + "%t = OpFUnordGreaterThanEqual %b4 %m %vb",
+             [&](const Inputs& in) { return is_nan(in) || in.a >= in.b; });
+  comparison(which + "%t = OpIsNan %b4 %m", [&](const Inputs& in) { return is_nan(in); });
+  comparison("%q = OpFDiv %v4 %va %f0000\n%t = OpIsInf %b4 %q", [](const Inputs& in) { return in.a != 0; });
+
+  comparison("%t = OpIEqual %b4 %vi %vj", [](const Inputs& in) { return in.i == in.j; });
+  comparison("%t = OpINotEqual %b4 %vi %vj", [](const Inputs& in) { return in.i != in.j; });
+  comparison("%t = OpULessThan %b4 %vi %vj", [](const Inputs& in) { return in.i < in.j; });
+  comparison("%t = OpULessThanEqual %b4 %vi %vj", [](const Inputs& in) { return in.i <= in.j; });
+  comparison("%t = OpUGreaterThan %b4 %vi %vj", [](const Inputs& in) { return in.i > in.j; });
+  comparison("%t = OpUGreaterThanEqual %b4 %vi %vj", [](const Inputs& in) { return in.i >= in.j; });
+  comparison("%t = OpSLessThan %b4 %vi %vj", [](const Inputs& in) { return s(in.i) < s(in.j); });
+  comparison("%t = OpSLessThanEqual %b4 %vi %vj", [](const Inputs& in) { return s(in.i) <= s(in.j); });
+  comparison("%t = OpSGreaterThan %b4 %vi %vj", [](const Inputs& in) { return s(in.i) > s(in.j); });
+  comparison("%t = OpSGreaterThanEqual %b4 %vi %vj", [](const Inputs& in) { return s(in.i) >= s(in.j); });
+
+  const std::string two = "%x = OpULessThan %b4 %vi %vj\n%y = OpULessThan %b4 %vj %vk\n";
+  const auto x = [](const Inputs& in) { return in.i < in.j; };
+  const auto y = [](const Inputs& in) { return in.j < in.k; };
+  comparison(two + "%t = OpLogicalAnd %b4 %x %y", [&](const Inputs& in) { return x(in) && y(in); });
+  comparison(two + "%t = OpLogicalOr %b4 %x %y", [&](const Inputs& in) { return x(in) || y(in); });
+  comparison(two + "%t = OpLogicalEqual %b4 %x %y", [&](const Inputs& in) { return x(in) == y(in); });
+  comparison(two + "%t = OpLogicalNotEqual %b4 %x %y", [&](const Inputs& in) { return x(in) != y(in); });
+  comparison(two + "%t = OpLogicalNot %b4 %x", [&](const Inputs& in) { return !x(in); });
+}
+
+TEST(SpirvArithmetic, IntegersAsInCpp) {
+  integers("%r = OpIAdd %u4 %vi %vj", [](const Inputs& in) { return in.i + in.j; });
+  integers("%r = OpISub %u4 %vi %vj", [](const Inputs& in) { return in.i - in.j; });
+  integers("%r = OpIMul %u4 %vi %vj", [](const Inputs& in) { return in.i * in.j; });
+  integers("%r = OpSNegate %u4 %vi", [](const Inputs& in) { return 0u - in.i; });
+  integers("%r = OpUDiv %u4 %vi %vj", [](const Inputs& in) { return in.j ? in.i / in.j : ~0u; });
+  integers("%r = OpUMod %u4 %vi %vj", [](const Inputs& in) { return in.j ? in.i % in.j : ~0u; });
+  const auto wide = [](std::uint32_t value) { return std::int64_t{s(value)}; };
+  integers("%r = OpSDiv %u4 %vi %vj",
+           [&](const Inputs& in) { return static_cast<std::uint32_t>(in.j ? wide(in.i) / wide(in.j) : -1); });
+  integers("%r = OpSRem %u4 %vi %vj",
+           [&](const Inputs& in) { return static_cast<std::uint32_t>(in.j ? wide(in.i) % wide(in.j) : -1); });
+  integers("%r = OpSMod %u4 %vi %vj", [&](const Inputs& in) {  // the sign of the divisor
+    if (in.j == 0) return ~0u;
+    return static_cast<std::uint32_t>(((wide(in.i) % wide(in.j)) + wide(in.j)) % wide(in.j));
+  });
+  integers(
+      "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShiftLeftLogical %u4 %vi %n",
+      [](const Inputs& in) { return in.i << (in.j & 31); },
+      "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
+  integers(
+      "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShiftRightLogical %u4 %vi %n",
+      [](const Inputs& in) { return in.i >> (in.j & 31); },
+      "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
+  integers(
+      "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShiftRightArithmetic %u4 %vi %n",
+      [](const Inputs& in) { return static_cast<std::uint32_t>(s(in.i) >> (in.j & 31)); },
+      "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
+  integers("%r = OpBitwiseOr %u4 %vi %vj", [](const Inputs& in) { return in.i | in.j; });
+  integers("%r = OpBitwiseXor %u4 %vi %vj", [](const Inputs& in) { return in.i ^ in.j; });
+  integers("%r = OpNot %u4 %vi", [](const Inputs& in) { return ~in.i; });
+  integers("%r = OpBitCount %u4 %vi", [](const Inputs& in) { return static_cast<std::uint32_t>(std::popcount(in.i)); });
+  integers("%r = OpBitReverse %u4 %vi", [](const Inputs& in) {
+    std::uint32_t reversed = 0;
+    for (int bit = 0; bit < 32; ++bit) reversed |= (in.i >> bit & 1u) << (31 - bit);
+    return reversed;
+  });
+}
+
+TEST(SpirvArithmetic, BitFieldsAndLongProducts) {
+  const auto mask = [](std::uint32_t count) { return static_cast<std::uint32_t>((std::uint64_t{1} << count) - 1); };
+  integers("%r = OpBitFieldUExtract %u4 %vi %u3_ %u4_", [&](const Inputs& in) { return in.i >> 3 & mask(4); });
+  integers("%r = OpBitFieldSExtract %u4 %vi %u3_ %u4_",
+           [&](const Inputs& in) { return static_cast<std::uint32_t>(s(in.i << 25) >> 28); });
+  integers("%r = OpBitFieldInsert %u4 %vi %vj %u3_ %u4_",
+           [&](const Inputs& in) { return (in.i & ~(mask(4) << 3)) | (in.j & mask(4)) << 3; });
+  // An offset and a number of bits that are not constant.
+  const std::string field =
+      "%k0 = OpCompositeExtract %uint %vk 0\n%offset = OpUMod %uint %k0 %u4_\n%count = OpShiftLeftLogical %uint %u3_ "
+      "%offset\n";
+  TestShader shader(ShaderParts{.body = field + R"(
+%x = OpBitFieldUExtract %u4 %vi %offset %count
+%y = OpBitFieldSExtract %u4 %vi %offset %count
+%z = OpBitFieldInsert %u4 %vi %vj %offset %count
+%s = OpIAdd %u4 %x %y
+%r = OpBitwiseXor %u4 %s %z
+OpStore %iout %r
+)"});
+  std::mt19937 random(3);
+  std::vector<Inputs> inputs(kShaderLanes);
+  for (std::size_t lane = 0; lane < kShaderLanes; ++lane) {
+    Inputs& in = inputs[lane];
+    in.i = any_integer(random, lane), in.j = any_integer(random, lane + 1), in.k = static_cast<std::uint32_t>(lane);
+    shader.set_integer(3, 2, lane, in.i), shader.set_integer(4, 2, lane, in.j), shader.set_integer(5, 0, lane, in.k);
+  }
+  shader.run();
+  for (std::size_t lane = 0; lane < kShaderLanes; ++lane) {
+    const Inputs& in = inputs[lane];
+    const std::uint32_t offset = in.k % 4, count = 3u << offset, field_mask = mask(count);
+    const std::uint32_t u = in.i >> offset & field_mask;
+    const std::uint32_t sign = u >> (count - 1) & 1u ? u | ~field_mask : u;
+    const std::uint32_t inserted = (in.i & ~(field_mask << offset)) | (in.j & field_mask) << offset;
+    EXPECT_EQ(shader.integer(2, lane), (u + sign) ^ inserted);
+  }
+
+  const std::string pair = "%pair = OpTypeStruct %u4 %u4";
+  integers(
+      "%p = OpUMulExtended %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
+      [](const Inputs& in) { return static_cast<std::uint32_t>(std::uint64_t{in.i} * in.j >> 32); }, pair);
+  integers(
+      "%p = OpSMulExtended %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
+      [](const Inputs& in) {
+        return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::int64_t{s(in.i)} * s(in.j)) >> 32);
+      },
+      pair);
+  integers(
+      "%p = OpUMulExtended %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 0",
+      [](const Inputs& in) { return in.i * in.j; }, pair);
+  integers(
+      "%p = OpIAddCarry %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
+      [](const Inputs& in) { return static_cast<std::uint32_t>((std::uint64_t{in.i} + in.j) >> 32); }, pair);
+  integers(
+      "%p = OpISubBorrow %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
+      [](const Inputs& in) { return in.i < in.j ? 1u : 0u; }, pair);
+}
+
+TEST(SpirvArithmetic, Conversions) {
+  const auto to_signed = [](float a) {
+    return a >= 2147483648.0f   ? 2147483520u
+           : a < -2147483648.0f ? 0x80000000u
+                                : static_cast<std::uint32_t>(static_cast<std::int32_t>(a));
+  };
+  integers("%q = OpConvertFToS %i4 %va\n%r = OpBitcast %u4 %q", [&](const Inputs& in) { return to_signed(in.a); });
+  integers("%r = OpConvertFToU %u4 %va", [](const Inputs& in) {
+    return in.a >= 4294967296.0f ? 4294967040u : in.a < 0 ? 0u : static_cast<std::uint32_t>(in.a);
+  });
+  floats("%q = OpBitcast %i4 %vi\n%r = OpConvertSToF %v4 %q",
+         [](const Inputs& in) { return static_cast<float>(s(in.i)); });
+  floats("%r = OpConvertUToF %v4 %vi", [](const Inputs& in) { return static_cast<float>(in.i); });
+  integers("%r = OpBitcast %u4 %va", [](const Inputs& in) { return std::bit_cast<std::uint32_t>(in.a); });
+  // Narrow integers wrap, and keep their sign where it matters.
+  integers("%q = OpSConvert %s4 %vi\n%p = OpSConvert %i4 %q\n%r = OpBitcast %u4 %p",
+           [](const Inputs& in) { return static_cast<std::uint32_t>(std::int32_t{static_cast<std::int16_t>(in.i)}); });
+  integers("%q = OpUConvert %us4 %vi\n%p = OpIMul %us4 %q %q\n%r = OpUConvert %u4 %p",
+           [](const Inputs& in) { return (in.i & 0xffffu) * (in.i & 0xffffu) & 0xffffu; });
+  integers(
+      "%q = OpSConvert %c4 %vi\n%p = OpSConvert %c4 %vj\n%d = OpISub %c4 %q %p\n%e = OpSConvert %i4 %d\n%r = "
+      "OpBitcast %u4 %e",
+      [](const Inputs& in) { return static_cast<std::uint32_t>(std::int32_t{static_cast<std::int8_t>(in.i - in.j)}); });
+  integers(
+      "%q = OpSConvert %s4 %vi\n%p = OpSConvert %s4 %vj\n%t = OpSLessThan %b4 %q %p\n%r = OpSelect %u4 %t %u1111 "
+      "%u0000",
+      [](const Inputs& in) { return static_cast<std::int16_t>(in.i) < static_cast<std::int16_t>(in.j) ? 1u : 0u; });
+  integers(
+      "%q = OpSConvert %s4 %vi\n%p = OpShiftRightArithmetic %s4 %q %three\n%e = OpSConvert %i4 %p\n%r = OpBitcast "
+      "%u4 %e",
+      [](const Inputs& in) { return static_cast<std::uint32_t>(static_cast<std::int16_t>(in.i) >> 3); },
+      "%s3 = OpConstant %short 3\n%three = OpConstantComposite %s4 %s3 %s3 %s3 %s3");
+}
+
+// 16-bit floats: each result is the nearest one.
+TEST(SpirvArithmetic, HalfFloats) {
+  const std::string both = "%x = OpFConvert %h4 %va\n%y = OpFConvert %h4 %vb\n";
+  floats("%x = OpFConvert %h4 %va\n%r = OpFConvert %v4 %x", [&](const Inputs& in) { return nearest_half(in.a); });
+  floats("%r = OpQuantizeToF16 %v4 %va", [&](const Inputs& in) { return nearest_half(in.a); });
+  floats(both + "%z = OpFAdd %h4 %x %y\n%r = OpFConvert %v4 %z",
+         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) + nearest_half(in.b)); });
+  floats(both + "%z = OpFMul %h4 %x %y\n%r = OpFConvert %v4 %z",
+         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) * nearest_half(in.b)); });
+  floats(both + "%z = OpFDiv %h4 %x %y\n%r = OpFConvert %v4 %z",
+         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) / nearest_half(in.b)); });
+  // Through the bits, as zink writes it.
+  integers("%x = OpFConvert %h4 %va\n%y = OpBitcast %us4 %x\n%r = OpUConvert %u4 %y",
+           [](const Inputs& in) { return std::uint32_t{half_of(in.a)}; });
+  floats("%x = OpUConvert %us4 %vi\n%y = OpBitcast %h4 %x\n%r = OpFConvert %v4 %y",
+         [](const Inputs& in) { return half_value(static_cast<std::uint16_t>(in.i)); });
+}
+
+TEST(SpirvArithmetic, SelectsPartByPart) {
+  floats("%t = OpULessThan %b4 %vi %vj\n%r = OpSelect %v4 %t %va %vb",
+         [](const Inputs& in) { return in.i < in.j ? in.a : in.b; });
+}
+
+}  // namespace
+}  // namespace beampipe
