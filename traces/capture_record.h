@@ -36,9 +36,9 @@ struct LeftOut {
 // The pictures that the program itself made of a frame.
 struct CapturedPictures {
   std::optional<std::uint32_t> color{};  // index into Trace::images, of the frame's size
-  std::vector<float> depth;              // window depth of each pixel's first sample, row by row; empty or of the frame's size
-  float clear_depth = 1;                 // where nothing was drawn
-  std::uint32_t samples = 1;             // of each pixel: 1, 2, 4, 8 or 16
+  std::vector<float> depth;   // window depth of each pixel's first sample, row by row; empty or of the frame's size
+  float clear_depth = 1;      // where nothing was drawn
+  std::uint32_t samples = 1;  // of each pixel: 1, 2, 4, 8 or 16
   bool operator==(const CapturedPictures&) const = default;
 };
 

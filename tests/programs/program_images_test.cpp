@@ -167,6 +167,8 @@ TEST(ProgramImages, DetailComesFromDerivatives) {
       reader.numbers({.action = ImageAction::query_lod, .at = {0.1f}, .dx = {4.0f}, .dy = {0.0f}});
   EXPECT_EQ(asked[0], 1);
   EXPECT_EQ(asked[1], 3);
+  // Three texels: 9 is 8 and an eighth of it, which a line makes (3 + 1 / 8) / 2.
+  EXPECT_EQ(reader.numbers({.action = ImageAction::query_lod, .at = {0.1f}, .dx = {1.5f}, .dy = {0.0f}})[1], 1.5625f);
 }
 
 // Three texels along x and none along y. Three samples on the longer side are each taken at level 0.

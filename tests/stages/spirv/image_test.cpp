@@ -103,8 +103,9 @@ OpStore %out %r
                 y = static_cast<float>(lane / 16 * 2 + lane / 2 % 2);
     EXPECT_EQ(asked.rows[1][0].number(lane), 1);
     EXPECT_EQ(asked.rows[2][0].number(lane), 3);
-    EXPECT_EQ(asked.rows[1][1].number(lane), y);  // of this row, not of the quad's first
-    EXPECT_EQ(asked.rows[2][1].number(lane), x);
+    // Of the quad's first row and column, not of the lane's own.
+    EXPECT_EQ(asked.rows[1][1].number(lane), static_cast<float>(lane / 16 * 2));
+    EXPECT_EQ(asked.rows[2][1].number(lane), static_cast<float>(lane / 4 % 4 * 2));
     EXPECT_EQ(shader.number(0, lane), x + 3 * y);
     EXPECT_EQ(shader.output(0, 2).bits[lane], 9u);
   }

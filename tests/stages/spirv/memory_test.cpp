@@ -272,8 +272,12 @@ OpDecorate %second Index 1
   for (const InterfaceRow& row : program.inputs) {
     places += row.built_in == spv::BuiltInFragCoord && row.is_float;
     fronts += row.built_in == spv::BuiltInFrontFacing && !row.is_float;
-    if (row.location == 3) EXPECT_EQ(row.interpolation, Interpolation::flat);
-    if (row.location == 0) EXPECT_EQ(row.interpolation, Interpolation::perspective);
+    if (row.location == 3) {
+      EXPECT_EQ(row.interpolation, Interpolation::flat);
+    }
+    if (row.location == 0) {
+      EXPECT_EQ(row.interpolation, Interpolation::perspective);
+    }
     if (row.location != 8 && row.location != 9) continue;
     EXPECT_EQ(row.component, 1 + array_rows % 2);
     EXPECT_EQ(row.location, 8 + array_rows / 2);
