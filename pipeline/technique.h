@@ -118,6 +118,7 @@ enum class ErrorSource {
   estimated_areas,         // areas of partly hidden triangles are estimated from mask positions
   independent_fragments,   // OVER: fragments cover a pixel independently of each other
   published_merges,        // the published rules: an area is spread evenly over its mask
+  merges_one_by_one,       // into one area and mask, by one depth of each fragment
   merges_in_fp16,          // of colours: small shares are lost
   merges_of_half_slopes,   // slopes of 16 bits turn equal planes into a slab
   merges_of_layers,        // a few layers per pixel, with slopes of 8 bits

@@ -112,6 +112,12 @@ FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
   });
 }
 
+std::vector<ErrorSource> error_sources(const SortedOptions& sorted) {
+  std::vector<ErrorSource> sources = {ErrorSource::estimated_areas};
+  if (sorted.window == Window::one) sources.push_back(ErrorSource::merges_one_by_one);
+  return sources;
+}
+
 }  // namespace
 
 TechniqueKind beam_sorted_kind() {
@@ -123,7 +129,8 @@ TechniqueKind beam_sorted_kind() {
           .source = "ours, after Crassin et al. 2018",
           .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,window=one"},
           .texture_taps = 16,
-          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
+          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32",
+                       "beam:order=sorted,window=one"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {
@@ -134,12 +141,12 @@ TechniqueKind beam_sorted_kind() {
                                    "format of the aggregate's colour: fp16, or float32")),
                         choice("window", o.window, {{"run", Window::run}, {"one", Window::one}},
                                "what is composed at once: a run of triangles whose depths overlap, or one triangle, by "
-                               "the depths of their centroids")};
+                               "the depths of their centroids, which loses area where they cross or meet")};
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
                                  .positions = o.positions,
-                                 .errs_by = {ErrorSource::estimated_areas},
+                                 .errs_by = error_sources(o),
                                  .renderer = bind_options(render_sorted, o),
                                  .is_observable = true,
                                  .has_weights = true};

@@ -237,7 +237,7 @@ SpecOptions casav_options(CasavOptions& o) {
       choice("reading", o.reading, {{"best", Reading::best}, {"literal", Reading::literal}},
              "the best reading of the text, or the literal one: fuzzy=delta, slab=full, plane=area"),
       choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
-             "masks from a 64 x 64 table, or from edge tests"),
+             "masks from a table of 32 directions and 128 distances, or from edge tests"),
       beside(
           "order=sorted", [&o] { return o.order == CasavOrder::sorted; },
           choice("depths", o.depths, {{"slab", Depths::slab}, {"positions", Depths::positions}},

@@ -20,7 +20,7 @@
 
 namespace beampipe {
 
-// Where masks come from: the 64 x 64 table of the published rules, edge tests at arbitrary positions, edge tests at the
+// Where masks come from: the table of the published rules, edge tests at arbitrary positions, edge tests at the
 // positions of a grid; or there are no masks.
 enum class MaskSource { table, exact, grid, none };
 

@@ -75,6 +75,8 @@ class Screen {
 
 inline constexpr const char* kOver = "OVER assumes that fragments cover a pixel independently of each other";
 inline constexpr const char* kCasav = "masks have 32 positions, over which an area is spread evenly";
+inline constexpr const char* kOneByOne =
+    "fragments are merged one at a time, each by one depth, into one area and one mask";
 inline constexpr const char* kText =
     "16-bit slopes turn equal planes into a slab, of which each later triangle takes half";
 inline constexpr const char* kFull =

@@ -23,7 +23,9 @@ StatedLimits mask_limits(double error, const char* reason) {
 }
 
 StatedLimits merge_limits(double published, double over) {
-  return {{ErrorSource::published_merges, {published, kCasav}}, {ErrorSource::independent_fragments, {over, kOver}}};
+  return {{ErrorSource::published_merges, {published, kCasav}},
+          {ErrorSource::independent_fragments, {over, kOver}},
+          {ErrorSource::merges_one_by_one, {over, kOneByOne}}};
 }
 
 StatedLimits together(std::initializer_list<StatedLimits> several) {

@@ -128,8 +128,9 @@ HardCase depth_bias() {
   HardCase result =
       with_pieces(of("depth_bias", "equal planes that constant and slope biases put behind or in front", screen,
                      picture_of([](int x, int) { return Color(x < 4 || x >= 12 ? kRed : kGreen); })));
-  result.limits[ErrorSource::independent_fragments] = {
-      0.75, "fragments have one depth each, and pieces of one plane differ by more than the bias"};
+  for (const ErrorSource source : {ErrorSource::independent_fragments, ErrorSource::merges_one_by_one})
+    result.limits[source] = {0.75,
+                             "fragments have one depth each, and pieces of one plane differ by more than the bias"};
   return result;
 }
 
