@@ -14,8 +14,7 @@ import accuracy
 import scene_traces
 from measure import HELD_OUT, make, print_head, print_row
 
-SPECS = ["beam", "beam:bits=128,pool=30", "beam:order=stream", "casav", "z3:shape=128x3", "acaa:8", "msaa:8", "msaa:32",
-         "msaa:256"]
+SPECS = ["beam", "beam:bits=128,pool=30", "beam:order=stream", "casav", "z3:shape=128x3", "msaa:256"]
 UNLIT = ["truck", "breakfast_room", "lattice_site", "wire_fans"]
 UNLIT_SPECS = ["beam", "beam:bin=16", "beam:bits=128,pool=30", "beam:order=stream", "beam:order=stream,bits=256", "casav",
                "msaa:256"]
