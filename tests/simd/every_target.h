@@ -6,7 +6,7 @@
 
 namespace beampipe {
 
-// While `check` runs, all kernels use one target. Afterwards they use the machine's best one again, even if it throws.
+// While `check` runs, all kernels use one target. Afterwards they use the machine's best one, even if it throws.
 template <class Check>
 void on_every_target(Check&& check) {
   struct Restore {
