@@ -18,7 +18,8 @@ The rules:
     include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
     and costs that stages share), spirv/ (runs shaders) and surface/ (what surfaces look like, wherever they are
-    shaded): group -> surface -> spirv -> cost -> data -> simd. Of these, only groups and surface/ may include traces. No group includes another.
+    shaded): group -> surface -> spirv -> cost -> data -> simd. Of these, only groups and surface/ may include traces.
+    No group includes another.
 6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h, X_cost.cpp and parts of its
     kernel, X_PART-inl.h, and they include no other files of the group than these and the headers in SHARED_IN_GROUP.
 7.  Not checked: tests/ and bench/, which may include anything, but which the folders above may not include.
@@ -54,7 +55,8 @@ SHARED_IN_GROUP = {
     "stages/beam/merge_sort.h", "stages/beam/owner_rules.h", "stages/beam/owner_rules_cost.h",
     "stages/beam/owners_bin.h",
     "stages/beam/position_states-inl.h", "stages/beam/register_mask-inl.h", "stages/beam/casav_fragment.h",
-    "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/beam/specks_cost.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
+    "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/beam/specks_cost.h", "stages/geometry/clip.h",
+    "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
     "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/traverse.h",
     "stages/raster/traverse_cost.h", "stages/samples/sample_depth_cost.h", "stages/samples/sample_formulas.h",

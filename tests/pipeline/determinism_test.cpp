@@ -61,7 +61,7 @@ void expect_same_in_any_tile(const Trace& trace) {
     options.tile_size = 0;
     const FrameResult expected = technique.render(trace, 0, options);
     for (const int tile_size :
-         thoroughness() > 1 ? std::vector{2, 6, 8, 16, 22, 32, 64, 128} : std::vector{2, 22, 64}) {
+         thoroughness() > 1 ? std::vector{2, 6, 8, 16, 22, 32, 64, 128} : std::vector{2, 22, 128}) {
       SCOPED_TRACE(spec + (" tile size: " + std::to_string(tile_size)));
       options.tile_size = tile_size;
       const FrameResult found = technique.render(trace, 0, options);

@@ -1,6 +1,7 @@
 #include "tools/evaluate/hardware_units.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace beampipe {
 namespace {
@@ -62,20 +63,20 @@ const std::vector<HardwareUnit>& hardware_units() {
              return std::max(over(s.items_in, rates.at("triangles_per_clk")),
                              over(s.lanes_used, rates.at("conservative_pixels_per_clk")));  // with hidden pixels
            }},
-      {.name = "dram",
+      {.name = kDram,
        .kind = Kind::implied,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
              return over(s.dram_bytes, rates.at("dram_bytes_per_clk") * rates.at("dram_efficiency"));
            }},
-      {.name = "export",
+      {.name = kExport,
        .kind = Kind::beside,
        .clocks = [](const Rates& rates,
                     const StageWork& s) { return over(s.bytes_written, rates.at("export_bytes_per_clk")); }},
-      {.name = "l2",
+      {.name = kL2,
        .kind = Kind::implied,
        .clocks = [](const Rates& rates, const StageWork& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
-      {.name = "latency", .kind = Kind::implied, .clocks = latency_clocks, .is_of_cores = true},
+      {.name = kLatency, .kind = Kind::implied, .clocks = latency_clocks, .is_of_cores = true},
       {.name = "mask_generator",
        .kind = Kind::fixed_function,
        .clocks =
@@ -132,7 +133,9 @@ const std::vector<HardwareUnit>& hardware_units() {
 
 const HardwareUnit& info_of_unit(std::string_view name) {
   const auto& all = hardware_units();
-  return *std::find_if(all.begin(), all.end(), [&](const HardwareUnit& unit) { return unit.name == name; });
+  const auto found = std::find_if(all.begin(), all.end(), [&](const HardwareUnit& unit) { return unit.name == name; });
+  if (found == all.end()) throw std::out_of_range("no unit " + std::string(name));
+  return *found;
 }
 
 }  // namespace beampipe

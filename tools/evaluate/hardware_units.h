@@ -48,6 +48,7 @@ struct HardwareUnit {
 
 // In the order of their names.
 const std::vector<HardwareUnit>& hardware_units();
+// Throws std::out_of_range if there is none.
 const HardwareUnit& info_of_unit(std::string_view name);
 
 }  // namespace beampipe

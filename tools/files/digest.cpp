@@ -48,6 +48,9 @@ class Digest {
   boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc_;
 };
 
+// Member by member: what lies between members is undefined.
+void add(const Blend& blend, Digest& digest) { digest.add_all(blend.color, blend.alpha, blend.constant); }
+
 void add(const ProgramUse& use, Digest& digest) {
   digest.add_all(use.program, use.push_constants);
   for (const BoundBuffer& each : use.buffers) digest.add_all(each.set, each.binding, each.element, each.bytes);
@@ -75,8 +78,11 @@ std::string digest_of(const Trace& trace) {
                    material.emissive, material.emissive_texture, material.alpha_mode, material.alpha_cutoff,
                    material.double_sided, material.unlit);
   }
-  for (const ShaderProgram& program : trace.programs)
-    digest.add_all(program.spirv, program.specialization, program.inputs);
+  for (const ShaderProgram& program : trace.programs) {
+    digest.add_all(program.spirv, program.specialization);
+    for (const ProgramInput& input : program.inputs)
+      digest.add_all(input.location, input.component, input.count, input.interpolation, input.integer);
+  }
   for (const ProgramImage& image : trace.program_images)
     digest.add_all(image.shape, image.format, image.width, image.height, image.depth, image.layers, image.array,
                    image.levels, image.texels);
@@ -96,8 +102,9 @@ std::string digest_of(const Trace& trace) {
       const DrawState& state = draw.state;
       const DepthState& depth = state.depth;
       digest.add_all(draw.mesh, draw.transform, draw.kd, draw.material, draw.cull, draw.shading);
-      digest.add_all(state.viewport, state.scissor, state.front_is_clockwise, state.blend, state.color_mask,
-                     state.stencil);
+      digest.add_all(state.viewport, state.scissor, state.front_is_clockwise, state.blend.has_value());
+      if (state.blend) add(*state.blend, digest);
+      digest.add_all(state.color_mask, state.stencil);
       digest.add_all(depth.test, depth.write, depth.function, depth.near, depth.far, depth.bias, depth.clip,
                      depth.cleared_before);
       if (draw.program) add(*draw.program, digest);
