@@ -30,6 +30,22 @@ for part in classroom:102,51,56,44 boat:65,109,56,44 hairball:120,37,56,44; do
     -o "$docs/pictures/${scene}_detail.png"
 done
 
+# Whole pictures, and parts of some: docs/shading.md.
+for part in tiles: stairs:20,30,76,50 leaves:84,26,56,44 sheets:200,64,56,44 rigging:166,100,56,44; do
+  scene=${part%%:*} places=${part#*:}
+  "$program" make "$scene" -o "$scene.json"
+  "$program" run "$scene.json" -t reference beam msaa:8,32 --no-memory-model --force -o "$scene"
+  if [[ $scene != rigging ]]; then
+    for technique in reference beam msaa_8 msaa_32; do
+      cp "$scene/$technique/frame_0000.png" "$docs/pictures/${scene}_$technique.png"
+    done
+  fi
+  if [[ -n $places ]]; then
+    "$docs/detail.py" "$places" 4 "$scene"/{reference,beam,msaa_8,msaa_32}/frame_0000.png \
+      -o "$docs/pictures/${scene}_detail.png"
+  fi
+done
+
 # The worst pixel of the boat: docs/tutorial.md.
 "$program" make boat -o boat.json
 "$program" inspect boat.json --worst 1 -t beam -o "$docs/pictures/inspect_boat.svg" >inspect_boat.txt
