@@ -274,6 +274,12 @@ LaneProgram assign_rows(Draft draft) {
       if (op.code == LaneCode::load_local || op.code == LaneCode::store_local) rename(op.c);
       program.ops.push_back(op);
     }
+    // To choose a block's lanes takes as long as some operations, and to read an image as long as many.
+    constexpr std::size_t kBlockSteps = 4, kImageSteps = 32;
+    std::size_t steps = kBlockSteps + block.ops.size() + block.edges.size();
+    for (const DraftEdge& edge : block.edges) steps += edge.copies.size();
+    for (const LaneOp& op : block.ops) steps += op.code == LaneCode::image ? kImageSteps : 0;
+    made.steps = static_cast<std::uint32_t>(steps);
     for (const DraftEdge& edge : block.edges) {
       program.edges.push_back({.target = edge.target,
                                .literal = edge.literal,

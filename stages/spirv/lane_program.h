@@ -70,6 +70,7 @@ struct LaneBlock {
   std::uint32_t first_edge = 0, edges = 0;  // in LaneProgram::edges
   OperationCounts cost{};                   // of one lane
   std::uint32_t requests = 0;               // texture requests of one lane
+  std::uint32_t steps = 0;                  // what it counts as where runs are bounded (ShaderExecutor::kMostSteps)
 };
 
 // How an input varies over its triangle.
