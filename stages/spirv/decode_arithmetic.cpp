@@ -163,6 +163,21 @@ bool Decoder::decode_arithmetic(const Instruction& instruction) {
     return true;
   }
   switch (instruction.op) {
+    case spv::OpFwidth:
+    case spv::OpFwidthFine:
+    case spv::OpFwidthCoarse: {  // |dx| + |dy|
+      draft_.program.takes_differences = true;
+      const Parts a = parts(operands[0]);
+      const bool is_coarse = instruction.op == spv::OpFwidthCoarse;
+      const std::uint32_t width = scalar_of(instruction.type).width;
+      const auto size = [&](Code code, Row row) { return float_op(width, Code::f_abs, float_op(width, code, row)); };
+      Parts results;
+      for (const Row row : a)
+        results.push_back(float_op(width, Code::f_add, size(is_coarse ? Code::dx_coarse : Code::dx, row),
+                                   size(is_coarse ? Code::dy_coarse : Code::dy, row)));
+      define(instruction, std::move(results));
+      return true;
+    }
     case spv::OpShiftLeftLogical:
     case spv::OpShiftRightLogical:
     case spv::OpShiftRightArithmetic: {

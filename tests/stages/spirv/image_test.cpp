@@ -250,5 +250,27 @@ OpStore %out %r
   expect(0, 0, 0, 0, 0);
 }
 
+TEST(SpirvImages, WidthsAreSumsOfDifferences) {
+  TestShader shader(ShaderParts{.body = R"(
+%x = OpCompositeExtract %float %va 0
+%any = OpFwidth %float %x
+%fine = OpFwidthFine %float %x
+%coarse = OpFwidthCoarse %float %x
+%r = OpCompositeConstruct %v4 %any %fine %coarse %f0
+OpStore %out %r
+)"});
+  EXPECT_TRUE(shader.program.takes_differences);
+  // Values of a quad: 1 -10 / 100 1000.
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane)
+    shader.set(0, 0, lane, std::array{1.0f, -10.0f, 100.0f, 1000.0f}[lane % 4]);
+  shader.run(4);
+  constexpr float kFine[] = {11 + 99, 11 + 1010, 900 + 99, 900 + 1010};
+  for (std::uint32_t lane = 0; lane < 4; ++lane) {
+    EXPECT_EQ(shader.number(0, lane), kFine[lane]);
+    EXPECT_EQ(shader.number(1, lane), kFine[lane]);
+    EXPECT_EQ(shader.number(2, lane), 11 + 99);
+  }
+}
+
 }  // namespace
 }  // namespace beampipe
