@@ -1,60 +1,12 @@
 // The executor of shaders against Mesa's lavapipe, on random numbers, buffers and images: all outputs agree to 1e-5 of
 // the larger of 1 and the number, unless a test says why they do not.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <random>
-
-#include "tests/lavapipe/executor_run.h"
-#include "tests/stages/spirv/shader_text.h"
+#include "tests/lavapipe/lavapipe_test.h"
 
 namespace beampipe {
 namespace {
 
-class Lavapipe : public testing::Test {
+class LavapipeShaders : public LavapipeTest {
  protected:
-  static void SetUpTestSuite() { driver_ = Driver::find(problem_).release(); }
-  static void TearDownTestSuite() { delete driver_; }
-  void SetUp() override {
-    if (!driver_) GTEST_SKIP() << problem_;
-  }
-
-  std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
-  float uniform(float least, float most) { return std::uniform_real_distribution<float>(least, most)(random_); }
-
-  // The inputs of shader_text(): %a, %b, %c within [least, most], and any %i, %j, %k.
-  ShaderCase points(const ShaderParts& parts, float least = -10, float most = 10) {
-    ShaderCase made{.words = assembled(shader_text(parts))};
-    for (std::uint32_t location = 0; location < 6; ++location) {
-      CaseInput& input = made.inputs[location];
-      input.is_integer = location >= 3;
-      input.vertices.resize(kPixels);
-      for (std::size_t i = 0; i < kPixels; ++i)
-        for (std::uint32_t& bits : input.vertices[i])
-          bits = input.is_integer ? any_integer(random_, i) : bits_of(uniform(least, most));
-    }
-    return made;
-  }
-  // A triangle: %a, %b and %c are linear, of multiples of 1/64, so that both know them exactly.
-  ShaderCase triangle(const ShaderParts& parts) {
-    ShaderCase made{.words = assembled(shader_text(parts)), .is_triangle = true};
-    for (std::uint32_t location = 0; location < 6; ++location) {
-      CaseInput& input = made.inputs[location];
-      input.is_integer = location >= 3;
-      input.vertices.resize(3);
-      for (FourBits& vertex : input.vertices)
-        for (std::uint32_t& bits : vertex)
-          bits = input.is_integer ? any_integer(random_, 3) : bits_of(std::nearbyint(uniform(-256, 256)) / 64);
-    }
-    return made;
-  }
-
-  void expect_near(const ShaderCase& shader, const std::string& name, double tolerance = 1e-5) {
-    const Agreement found = agreement_of(*driver_, shader, tolerance);
-    EXPECT_GT(found.outputs, 0u) << name;
-    EXPECT_EQ(found.near, found.outputs) << name << "\n" << found.example << ", worst " << found.worst;
-  }
-
   // Instructions that make %r of 4 floats or 4 unsigned integers.
   void floats(const std::string& body, float least = -10, float most = 10, double tolerance = 1e-5,
               const std::string& globals = "") {
@@ -64,13 +16,9 @@ class Lavapipe : public testing::Test {
   void integers(const std::string& body, const std::string& globals = "") {
     expect_near(points({.body = body + "\nOpStore %iout %r\nOpStore %out %f0000", .globals = globals}), body);
   }
-
-  static inline Driver* driver_ = nullptr;
-  static inline std::string problem_;
-  std::mt19937 random_{7};
 };
 
-TEST_F(Lavapipe, ArithmeticOfFloats) {
+TEST_F(LavapipeShaders, ArithmeticOfFloats) {
   for (const std::string op : {"FAdd", "FSub", "FMul", "FDiv"}) floats("%r = Op" + op + " %v4 %va %vb");
   floats("%r = OpFNegate %v4 %va");
   // Where a quotient is nearly whole, the driver may find the next multiple.
@@ -80,7 +28,7 @@ TEST_F(Lavapipe, ArithmeticOfFloats) {
   floats("%x = OpDot %float %va %vb\n%r = OpCompositeConstruct %v4 %x %x %f0 %f1");
 }
 
-TEST_F(Lavapipe, Comparisons) {
+TEST_F(LavapipeShaders, Comparisons) {
   // Of numbers of which many are the same.
   for (const std::string op : {"FOrdEqual", "FOrdNotEqual", "FOrdLessThan", "FOrdGreaterThan", "FOrdLessThanEqual",
                                "FOrdGreaterThanEqual", "FUnordEqual", "FUnordNotEqual", "FUnordLessThan",
@@ -107,7 +55,7 @@ TEST_F(Lavapipe, Comparisons) {
       "%q = OpIsInf %b4 %x\n%r = OpSelect %u4 %q %u1111 %u0000");
 }
 
-TEST_F(Lavapipe, Integers) {
+TEST_F(LavapipeShaders, Integers) {
   for (const std::string op : {"IAdd", "ISub", "IMul", "BitwiseAnd", "BitwiseOr", "BitwiseXor"})
     integers("%r = Op" + op + " %u4 %vi %vj");
   for (const std::string op : {"SNegate", "Not", "BitCount", "BitReverse"}) integers("%r = Op" + op + " %u4 %vi");
@@ -136,7 +84,7 @@ TEST_F(Lavapipe, Integers) {
   integers(field + "%r = OpBitFieldInsert %u4 %vi %vj %offset %count");
 }
 
-TEST_F(Lavapipe, Conversions) {
+TEST_F(LavapipeShaders, Conversions) {
   integers("%q = OpConvertFToS %i4 %va\n%r = OpBitcast %u4 %q");
   integers("%x = OpExtInst %v4 %glsl FAbs %va\n%r = OpConvertFToU %u4 %x");
   floats("%q = OpBitcast %i4 %vi\n%r = OpConvertSToF %v4 %q");
@@ -155,7 +103,7 @@ TEST_F(Lavapipe, Conversions) {
   floats("%x = OpSConvert %s4 %vi\n%y = OpConvertSToF %h4 %x\n%r = OpFConvert %v4 %y");
 }
 
-TEST_F(Lavapipe, HalfFloats) {
+TEST_F(LavapipeShaders, HalfFloats) {
   const std::string both = "%x = OpFConvert %h4 %va\n%y = OpFConvert %h4 %vb\n%w = OpFConvert %h4 %vc\n",
                     back = "\n%r = OpFConvert %v4 %z";
   for (const std::string op : {"FAdd", "FSub", "FMul", "FDiv"}) floats(both + "%z = Op" + op + " %h4 %x %y" + back);
@@ -170,7 +118,7 @@ TEST_F(Lavapipe, HalfFloats) {
   integers(both + "%t = OpFOrdLessThan %b4 %x %y\n%r = OpSelect %u4 %t %u1111 %u0000");
 }
 
-TEST_F(Lavapipe, LinearAlgebra) {
+TEST_F(LavapipeShaders, LinearAlgebra) {
   const std::string types =
       "%m4 = OpTypeMatrix %v4 4\n%m32 = OpTypeMatrix %v2 3\n%m23 = OpTypeMatrix %v3 2\n"
       "%m2 = OpTypeMatrix %v2 2\n%m3 = OpTypeMatrix %v3 3\n";
@@ -193,7 +141,7 @@ TEST_F(Lavapipe, LinearAlgebra) {
          1e-5, types);
 }
 
-TEST_F(Lavapipe, FunctionsThatRoundOnce) {
+TEST_F(LavapipeShaders, FunctionsThatRoundOnce) {
   const auto one = [&](const std::string& name, float least = -10, float most = 10) {
     floats("%r = OpExtInst %v4 %glsl " + name, least, most);
   };
@@ -206,7 +154,7 @@ TEST_F(Lavapipe, FunctionsThatRoundOnce) {
   one("SmoothStep %f0000 %f1111 %va", -0.5f, 1.5f);
 }
 
-TEST_F(Lavapipe, FunctionsOfVectors) {
+TEST_F(LavapipeShaders, FunctionsOfVectors) {
   const auto number = [&](const std::string& name) {
     floats("%x = OpExtInst %float %glsl " + name + "\n%r = OpCompositeConstruct %v4 %x %x %x %x");
   };
@@ -222,7 +170,7 @@ TEST_F(Lavapipe, FunctionsOfVectors) {
       "%z = OpExtInst %v3 %glsl Cross %x %y\n%r = OpCompositeConstruct %v4 %z %f1");
 }
 
-TEST_F(Lavapipe, TranscendentalFunctions) {
+TEST_F(LavapipeShaders, TranscendentalFunctions) {
   const auto one = [&](const std::string& name, float least, float most, double tolerance = 1e-5) {
     floats("%r = OpExtInst %v4 %glsl " + name, least, most, tolerance);
   };
@@ -236,7 +184,7 @@ TEST_F(Lavapipe, TranscendentalFunctions) {
   one("Pow %va %vb", 0.1f, 3);
 }
 
-TEST_F(Lavapipe, FunctionsOfIntegersAndBits) {
+TEST_F(LavapipeShaders, FunctionsOfIntegersAndBits) {
   for (const std::string name : {"UMin %vi %vj", "UMax %vi %vj", "FindILsb %vi", "FindUMsb %vi"})
     integers("%r = OpExtInst %u4 %glsl " + name);
   const std::string both = "%x = OpBitcast %i4 %vi\n%y = OpBitcast %i4 %vj\n";
@@ -271,7 +219,7 @@ TEST_F(Lavapipe, FunctionsOfIntegersAndBits) {
            results);
 }
 
-TEST_F(Lavapipe, Composites) {
+TEST_F(LavapipeShaders, Composites) {
   floats(
       "%n = OpBitwiseAnd %u4 %vi %u3333\n%k0 = OpCompositeExtract %uint %n 0\n%k1 = OpCompositeExtract %uint %n 1\n"
       "%x = OpVectorExtractDynamic %float %va %k0\n%r = OpVectorInsertDynamic %v4 %vb %x %k1",
@@ -284,7 +232,7 @@ TEST_F(Lavapipe, Composites) {
 }
 
 // Of a buffer: a number, an array, matrices by rows and by columns, and an array without end; and push constants.
-TEST_F(Lavapipe, BuffersAndPushConstants) {
+TEST_F(LavapipeShaders, BuffersAndPushConstants) {
   for (const std::string storage : {"Uniform", "StorageBuffer"}) {
     const std::string tail =
         storage == "Uniform" ? "%pairs = OpTypeArray %v2 %n8\n" : "%pairs = OpTypeRuntimeArray %v2\n";
@@ -362,7 +310,7 @@ OpDecorate %pairs ArrayStride )" +
   }
 }
 
-TEST_F(Lavapipe, LocalArrays) {
+TEST_F(LavapipeShaders, LocalArrays) {
   floats(
       R"(
 %list = OpVariable %to_list Function
@@ -391,7 +339,7 @@ OpStore %one %f2
 }
 
 // A loop with two ways out of which lanes take different ones, a switch that falls through, and a discard.
-TEST_F(Lavapipe, Flow) {
+TEST_F(LavapipeShaders, Flow) {
   const std::string body = R"(
 %k0 = OpCompositeExtract %uint %vi 0
 %most = OpBitwiseAnd %uint %k0 %u15
@@ -460,7 +408,7 @@ OpStore %iout %counts
   expect_near(triangle({.body = body, .globals = globals}), "triangle");
 }
 
-TEST_F(Lavapipe, Functions) {
+TEST_F(LavapipeShaders, Functions) {
   expect_near(
       points({.body = "%x = OpFunctionCall %v4 %twice %va\n%r = OpFunctionCall %v4 %twice %x\nOpStore %out %r\n"
                       "OpStore %iout %u0000",
@@ -470,7 +418,7 @@ TEST_F(Lavapipe, Functions) {
       "functions");
 }
 
-TEST_F(Lavapipe, SpecializationConstants) {
+TEST_F(LavapipeShaders, SpecializationConstants) {
   ShaderCase shader = points({.body = "%r = OpVectorTimesScalar %v4 %va %factor\nOpStore %out %r\nOpStore %iout %u0000",
                               .globals = "%factor = OpSpecConstant %float 1",
                               .decorations = "OpDecorate %factor SpecId 7"});
@@ -478,7 +426,7 @@ TEST_F(Lavapipe, SpecializationConstants) {
   expect_near(shader, "a factor");
 }
 
-TEST_F(Lavapipe, DifferencesInQuads) {
+TEST_F(LavapipeShaders, DifferencesInQuads) {
   // Coarse ones are left out: the driver's are fine ones, as they may be.
   for (const std::string op : {"DPdx", "DPdy", "DPdxFine", "DPdyFine", "Fwidth", "FwidthFine"})
     expect_near(triangle({.body = "%x = OpFMul %v4 %va %vb\n%r = Op" + op +
@@ -487,7 +435,7 @@ TEST_F(Lavapipe, DifferencesInQuads) {
                 op);
 }
 
-TEST_F(Lavapipe, BuiltInInputs) {
+TEST_F(LavapipeShaders, BuiltInInputs) {
   const ShaderParts parts{.body = R"(
 %p = OpLoad %v4 %coord
 %f = OpLoad %bool %front
