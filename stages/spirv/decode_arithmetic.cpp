@@ -473,8 +473,11 @@ bool Decoder::decode_conversion(const Instruction& instruction) {
       case spv::OpSConvert:
         results.push_back(width < from_width ? narrowed(width, row) : narrowed(width, widened(from_width, row)));
         break;
-      default:  // a 16-bit float is kept as one of 32 bits
-        results.push_back(width < from_width ? emit(Code::to_half, row) : row);
+      default:  // a 16-bit float is kept as one of 32 bits; SPIR-V leaves open how it is rounded, and Mesa rounds
+                // texels so
+        results.push_back(width == from_width || width == 32 ? row
+                          : texels_.contains(row)            ? emit(Code::to_half_towards_zero, row)
+                                                             : emit(Code::to_half, row));
     }
   }
   define(instruction, std::move(results));

@@ -14,7 +14,7 @@ namespace {
 // What the vertices say at a pixel.
 std::uint32_t bits_at(const ShaderCase& shader, const CaseInput& input, std::size_t pixel, std::uint32_t component) {
   if (!shader.is_triangle) return input.vertices[pixel][component];
-  if (input.is_integer) return input.vertices[0][component];
+  if (input.is_integer || input.is_flat) return input.vertices[0][component];
   const auto number = [&](std::size_t vertex) { return std::bit_cast<float>(input.vertices[vertex][component]); };
   const auto share = [](std::size_t place) { return (static_cast<float>(place) + 0.5f) / (2.0f * kSide); };
   return std::bit_cast<std::uint32_t>(number(0) + share(pixel % kSide) * (number(1) - number(0)) +

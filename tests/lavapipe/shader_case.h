@@ -20,9 +20,9 @@ inline constexpr float kDepth = 0.25f;
 
 using FourBits = std::array<std::uint32_t, 4>;
 
-// What the shader reads at a location: of each vertex four floats or integers.
+// What the shader reads at a location: of each vertex four floats or integers. Integers are flat.
 struct CaseInput {
-  bool is_integer = false;
+  bool is_integer = false, is_flat = false;
   std::vector<FourBits> vertices;
 };
 
@@ -33,7 +33,8 @@ struct ShaderCase {
   std::vector<ProgramImage> images{};
   std::vector<ProgramSampler> samplers{};
   // A triangle that covers all pixels: its first vertex at the upper left corner of the picture, the others as far
-  // again beyond the upper right and the lower left one; numbers are linear. Else a point in each pixel, row by row.
+  // again beyond the upper right and the lower left one; numbers are linear, and flat ones those of
+  // the first vertex. Else a point in each pixel, row by row.
   bool is_triangle = false;
   std::map<std::uint32_t, CaseInput> inputs{};  // by location
 

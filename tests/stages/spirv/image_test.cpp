@@ -250,6 +250,37 @@ OpStore %out %r
   expect(0, 0, 0, 0, 0);
 }
 
+// Texels that become 16-bit floats are rounded towards zero.
+TEST(SpirvImages, HalvesOfTexels) {
+  ImageShader shader(R"(
+%i_ = OpLoad %image_array %shadow
+%s_ = OpLoad %sampler %compare
+%both = OpSampledImage %sampled_array %i_ %s_
+%uvl = OpVectorShuffle %v3 %va %va 0 1 2
+%texel = OpImageSampleExplicitLod %v4 %both %uvl Lod %f0
+%bits = OpBitcast %u4 %texel
+%again = OpBitcast %v4 %bits
+%h = OpFConvert %h4 %again
+%r = OpFConvert %v4 %h
+OpStore %out %r
+)");
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNumbers[][2] = {{1 + 0x1p-11f + 0x1p-12f, 1},
+                                   {-1 - 0x1p-11f - 0x1p-12f, -1},
+                                   {1 + 0x1p-10f, 1 + 0x1p-10f},
+                                   {70000, 65504},
+                                   {-65519, -65504},
+                                   {kInfinity, kInfinity},
+                                   {0x1.fp-25f, 0},
+                                   {0x1.cp-24f, 0x1p-24f},
+                                   {-0x1.ffcp-15f, -0x1.ff8p-15f},
+                                   {0x1.fffp-15f, 0x1.ff8p-15f}};
+  for (std::size_t lane = 0; lane < std::size(kNumbers); ++lane) shader.set(0, 0, lane, kNumbers[lane][0]);
+  shader.run();
+  for (std::size_t lane = 0; lane < std::size(kNumbers); ++lane)
+    EXPECT_EQ(shader.number(0, lane), kNumbers[lane][1]) << lane;
+}
+
 TEST(SpirvImages, WidthsAreSumsOfDifferences) {
   TestShader shader(ShaderParts{.body = R"(
 %x = OpCompositeExtract %float %va 0
