@@ -93,7 +93,7 @@ std::uint32_t PixelObserver::fragment_of(std::uint32_t triangle, Fate fate) {
 
 void PixelObserver::take(std::size_t position, std::uint32_t fragment) {
   std::uint32_t& owner = history.owners[position];
-  if (position < layers_.size()) layers_[position].clear();
+  if (position < layers_.size()) layers_[position].clear(), behind_layers_[position] = 1;
   if (owner == fragment) return;
   count_move(owner, history.fragments[fragment].taken);
   if (owner != kNobody) count_move(fragment, history.fragments[owner].lost);

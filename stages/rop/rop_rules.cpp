@@ -1,5 +1,7 @@
 #include "stages/rop/rop_rules.h"
 
+#include <algorithm>
+
 namespace beampipe {
 namespace {
 
@@ -47,7 +49,9 @@ bool RopRule::writes_color() const {
 }
 
 RopRules::RopRules(const Trace& trace, const Frame& frame, const glm::vec3& background)
-    : clear_depth(window_clear_depth(trace, frame) - 1), clear_color(background, frame.background_alpha) {
+    : clear_depth(window_clear_depth(trace, frame) - 1),
+      clear_color(background, frame.background_alpha),
+      limits_color(std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.program.has_value(); })) {
   draws.reserve(frame.draws.size());
   for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
     const Draw& draw = frame.draws[i];
@@ -57,7 +61,6 @@ RopRules::RopRules(const Trace& trace, const Frame& frame, const glm::vec3& back
     RopRule rule = rule_of(state);
     draws.push_back({rule, rule});
     if (!state.blend && !draw.program) draws.back()[1].blend = kOver, draws.back()[1].writes_depth = false;
-    limits_color = limits_color && draw.program;
   }
 }
 
