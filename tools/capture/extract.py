@@ -57,22 +57,19 @@ def take_image(replay, image, key, folder):
                                   "levels": texture.mips})
 
 
-def read_draw(replay, programs, action, depth_format, folder):
+def read_draw(replay, programs, action, kept, folder):
     """What a draw is, as a dictionary; `left_out` says why it has no geometry."""
     controller = replay.controller
     controller.SetFrameEvent(action.event, False)
-    api = read_state(controller, depth_format)
+    api = read_state(controller, replay.format_name(kept.depth))
     draw = {"event": action.event, "api": api, "vertices": action.vertices, "left_out": None, "primitives": 0}
     if api["discards_all"]:
         return {**draw, "left_out": "rasterization is off"}
-    if api["cull"] == "FrontAndBack":
-        return {**draw, "left_out": "both faces are culled"}
-    if api["fill"] != "Solid":
-        return {**draw, "left_out": "triangles drawn as lines or points", "primitives": action.vertices // 3}
     program = programs.read()
     try:
-        clip, varyings, triangles = post_vertex.read_geometry(replay, replay.command(action.event), api["z_from_0"],
-                                                              program["inputs"] if program else [])
+        clip, varyings, triangles = post_vertex.read_geometry(
+            replay, replay.command(action.event), api, program["inputs"] if program else [],
+            replay.samples_of(kept.color or kept.depth))
     except post_vertex.LeftOut as reason:
         return {**draw, "left_out": reason.reason, "primitives": reason.primitives}
     for image in program["images"] if program else []:
@@ -89,6 +86,7 @@ def take_pictures(replay, found, kept):
     first, last = kept.draws[0].event, kept.draws[-1].event
     replay.controller.SetFrameEvent(first - 1, True)
     color, depth = replay.color_picture(kept.color) if kept.color else None, replay.depth_picture(kept.depth)
+    stencil = replay.stencil_picture(kept.depth)
     replay.controller.SetFrameEvent(last, True)
     size = replay.size_of(kept.color or kept.depth)
     drawn = [action.event for action in replay.actions() if action.is_draw]
@@ -96,9 +94,9 @@ def take_pictures(replay, found, kept):
         "api": replay.api, "driver": replay.driver, "filtering": FILTERING, "size": size,
         "samples": replay.samples_of(kept.color or kept.depth),
         "color_format": replay.format_name(kept.color), "depth_format": replay.format_name(kept.depth),
-        "color_before": color, "depth_before": depth,
+        "color_before": color, "depth_before": depth, "stencil_before": stencil,
         "color": replay.color_picture(kept.color) if kept.color else None, "depth": replay.depth_picture(kept.depth),
-        "kept": kept.name, "kept_color": kept.color, "cleared_before": sorted(kept.cleared_before),
+        "kept": kept.name, "kept_color": kept.color, "cleared_before": kept.cleared_before,
         "events": [draw.event for draw in kept.draws], "later_draws": sum(event > last for event in drawn),
         "passes": [{"name": one.name, "color": one.color, "size": replay.size_of(one.color or one.depth),
                     "draws": len(one.draws), "triangles": one.vertices // 3, "kept": one is kept,
@@ -117,10 +115,10 @@ def main(job_path):
         if job["pictures"]:
             value = take_pictures(replay, found, kept)
         else:
-            programs, depth_format, value = Programs(replay), replay.format_name(kept.depth), []
+            programs, value = Programs(replay), []
             with open(result + ".count", "wb", buffering=0) as count:
                 for action in kept.draws[job["share"]:: job["shares"]]:
-                    value.append(read_draw(replay, programs, action, depth_format, job["folder"]))
+                    value.append(read_draw(replay, programs, action, kept, job["folder"]))
                     count.write(b".")
         write_pickle(result + ".pickle", value)
         replay.close()
