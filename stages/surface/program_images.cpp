@@ -24,7 +24,14 @@ Word word_at(const std::uint8_t* bytes, std::size_t place) {
   return word;
 }
 
-float unorm8(const std::uint8_t* bytes, std::size_t place) { return static_cast<float>(bytes[place]) / 255.0f; }
+// Of all bytes, because a division takes as long as the rest of a texel.
+constexpr std::array<float, 256> kUnorm8 = [] {
+  std::array<float, 256> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i) / 255.0f;
+  return numbers;
+}();
+
+float unorm8(const std::uint8_t* bytes, std::size_t place) { return kUnorm8[bytes[place]]; }
 float half_at(const std::uint8_t* bytes, std::size_t place) { return half_value(word_at<std::uint16_t>(bytes, place)); }
 float unorm16(const std::uint8_t* bytes, std::size_t place) {
   return static_cast<float>(word_at<std::uint16_t>(bytes, place)) / 65535.0f;
@@ -95,6 +102,8 @@ Texel border_of(const ProgramSampler& sampler, TexelFormat format) {
 }
 
 Texel swizzled(const Texel& texel, const ImageView& view) {
+  constexpr std::array<char, 4> kPlain{'r', 'g', 'b', 'a'};
+  if (std::bit_cast<std::uint32_t>(view.swizzle) == std::bit_cast<std::uint32_t>(kPlain)) return texel;  // most are
   Texel result{};
   const float one = is_integer(view.image->format) ? number_of(1) : 1.0f;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -124,6 +133,7 @@ std::int64_t mirrored(std::int64_t n) { return n >= 0 ? n : -(1 + n); }
 
 // -1 and `size` are the border.
 std::int64_t wrapped(SamplerWrap wrap, std::int64_t place, std::int64_t size) {
+  if (static_cast<std::uint64_t>(place) < static_cast<std::uint64_t>(size)) return place;  // most are
   switch (wrap) {
     case SamplerWrap::repeat:
       return remainder_of(place, size);
