@@ -57,25 +57,32 @@ class _Buffers:
         return self.kept[buffer]
 
 
-def _instance(mesh, buffers, topology):
-    """(rows of bytes, corners of primitives) of one instance."""
+def _restarts(controller, command):
+    """Which of an indexed draw's indices begin a new strip. RenderDoc renumbers indices for what it returns, and those
+    of 16 bits that begin a strip, too."""
+    bound = controller.GetPipelineState().GetIBuffer()
+    width = bound.byteStride
+    data = bytes(controller.GetBufferData(bound.resourceId, bound.byteOffset + width * command.indexOffset,
+                                          width * command.numIndices))
+    return np.frombuffer(data, f"<u{width}") == (1 << 8 * width) - 1
+
+
+def _instance(mesh, buffers, topology, restarts):
+    """(rows of bytes, corners of primitives) of one instance. `restarts`: gives those of its draw."""
     if mesh.vertexResourceId == _NULL or mesh.vertexByteStride == 0:
         raise LeftOut("RenderDoc has no vertices after the vertex shader: " + str(mesh.status).strip(),
                       geometry.primitives_of(topology, mesh.numIndices))
-    restart = None
     if mesh.indexResourceId != _NULL:
         width = mesh.indexByteStride
         raw = buffers.whole(mesh.indexResourceId)
         indices = np.frombuffer(raw, f"<u{width}", mesh.numIndices, mesh.indexByteOffset).astype(np.int64)
-        if mesh.allowRestart and topology != "TriangleList":
-            restart = mesh.restartIndex & ((1 << 8 * width) - 1)
-        live = indices != restart if restart is not None else slice(None)
-        indices[live] += mesh.baseVertex
-        if restart is not None:
-            indices[~live] = restart = -1
+        indices += mesh.baseVertex
+        if mesh.allowRestart and not topology.endswith("List"):
+            found = restarts()
+            indices[: len(found)][found[: len(indices)]] = -1
     else:
         indices = np.arange(mesh.numIndices)
-    corners = geometry.corners_of(topology, indices, restart)
+    corners = geometry.corners_of(topology, indices, -1)
     if corners is None:
         raise LeftOut(f"topology {topology}", geometry.primitives_of(topology, mesh.numIndices))
     raw = buffers.whole(mesh.vertexResourceId)
@@ -147,7 +154,7 @@ def read_geometry(replay, command, api, inputs, samples):
     instances = max(1, command.numInstances) if command.flags & rd.ActionFlags.Instanced else 1
     for instance in range(instances):
         mesh = controller.GetPostVSData(instance, 0, stage)
-        vertices, found = _instance(mesh, buffers, mesh.topology.name)
+        vertices, found = _instance(mesh, buffers, mesh.topology.name, lambda: _restarts(controller, command))
         rows.append(vertices)
         corners.append(found + base)
         base += len(vertices)

@@ -126,17 +126,13 @@ class Replay:
         mean = sum(srgb.to_linear(sample[..., :3]) for sample in samples) / len(samples)
         return np.concatenate([srgb.from_linear(mean), sum(samples)[..., 3:] / len(samples)], -1, dtype=np.float32)
 
-    def depth_picture(self, texture):
-        """height x width float32 of window depths, row 0 on top, of sample 0; None if it cannot be read."""
+    def depth_and_stencil(self, texture):
+        """height x width float32 of window depths, and uint8 of stencil, row 0 on top, of sample 0; None for what is not
+        there or cannot be read."""
         if texture not in self.textures:
-            return None
-        return decode_depth(self._bytes(texture), *self.size_of(texture), self.format_of(texture))
-
-    def stencil_picture(self, texture):
-        """height x width of what sample 0 of a stencil buffer has, row 0 on top; None if there is none."""
-        if texture not in self.textures:
-            return None
-        return decode_stencil(self._bytes(texture), *self.size_of(texture), self.format_of(texture))
+            return None, None
+        data, size, format = self._bytes(texture), self.size_of(texture), self.format_of(texture)
+        return decode_depth(data, *size, format), decode_stencil(data, *size, format)
 
     def version(self, texture, event):
         """How often the frame has written a texture before an event."""

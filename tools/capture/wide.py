@@ -2,7 +2,8 @@
 
 Sources: OpenGL 4.6, sections 14.4 and 14.5; Vulkan 1.3, sections 28.9 and 28.10; Mesa 22.3 where these leave a choice:
 lines that are not rectangular take whole pixels, those whose centres they pass, `width` of them on the minor axis, also
-where pixels have more samples. Windows have y down, and pixels have their centres at halves."""
+where pixels have more samples. (Where they do, Mesa takes what lines and points carry half a pixel beside the place. That
+is an error, which is not made again here.) Windows have y down, and pixels have their centres at halves."""
 import numpy as np
 
 _TINY = 1e-20  # w below this is behind the eye
