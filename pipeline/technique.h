@@ -141,9 +141,10 @@ struct Technique {
   std::vector<ErrorSource> errs_by = {};    // without counted_positions, which says so itself
   double rounding_error = kFp16Error;       // of colours up to 1
   std::function<FrameResult(const Trace&, std::size_t frame, const FrameInput&, const FrameSinks&)> renderer;
-  bool is_observable = false;  // `render` can fill FrameSinks::histories
-  bool has_weights = false;    // `render` can fill FrameSinks::weights
-  bool keeps_history = false;  // a frame's picture depends on earlier frames (FrameInput::history)
+  bool is_observable = false;    // `render` can fill FrameSinks::histories
+  bool has_weights = false;      // `render` can fill FrameSinks::weights
+  bool keeps_api_order = false;  // it draws frames that need it in the API's order (stages/geometry/draw_plan.h)
+  bool keeps_history = false;    // a frame's picture depends on earlier frames (FrameInput::history)
   // The least memory that this program needs for a frame, in bytes per pixel: the picture, and what its stages hand to
   // each other.
   std::uint32_t working_bytes_per_pixel = sizeof(glm::vec4);

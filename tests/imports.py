@@ -17,9 +17,9 @@ The rules:
 4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may
     include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
-    and costs that stages share), spirv/ (runs shaders) and surface/ (what surfaces look like, wherever they are
-    shaded): group -> surface -> spirv -> cost -> data -> simd. Of these, only groups and surface/ may include traces.
-    No group includes another.
+    and costs that stages share), spirv/ (runs shaders), surface/ (what surfaces look like, wherever they are shaded)
+    and rop/ (what draws do to what is stored): group -> surface, rop -> spirv -> cost -> data -> simd. Of these, only
+    groups, surface/ and rop/ may include traces. No group includes another.
 6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h, X_cost.cpp and parts of its
     kernel, X_PART-inl.h, and they include no other files of the group than these and the headers in SHARED_IN_GROUP.
 7.  Not checked: tests/ and bench/, which may include anything, but which the folders above may not include.
@@ -43,9 +43,10 @@ ORDER = {
         "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
         "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
-    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost", "spirv"}, "spirv": {"data", "cost"}},
+    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost", "spirv"}, "spirv": {"data", "cost"},
+               "rop": {"data", "cost"}},
     "traces": {"root": {"scenes"}, "scenes": {"root"}, "files": {"root"}}}
-STAGE_GROUP = {"data", "cost", "surface"}
+STAGE_GROUP = {"data", "cost", "surface", "rop"}
 WITHOUT_TRACES = {"data", "cost", "spirv"}
 # Of the packages that all may use, the standard library and the system.
 LIGHT_HEADER = re.compile(r"(glm|hwy|tbb)/.*|\w+|(fcntl|malloc|unistd)\.h")
@@ -58,7 +59,8 @@ SHARED_IN_GROUP = {
     "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/beam/specks_cost.h", "stages/geometry/clip.h",
     "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
-    "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/traverse.h",
+    "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/reference_raster.h",
+    "stages/raster/reference_raster_cost.h", "stages/raster/reference_spans.h", "stages/raster/traverse.h",
     "stages/raster/traverse_cost.h", "stages/samples/sample_depth_cost.h", "stages/samples/sample_formulas.h",
     "stages/temporal/temporal_formulas.h"}
 # For the self-test: the rule that is expected ("-" for none), the file, and its text.

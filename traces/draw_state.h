@@ -100,7 +100,10 @@ struct DrawState {
   bool front_is_clockwise = false;  // as seen in the picture
   std::optional<Blend> blend{};     // else what the material says
   std::uint32_t color_mask = kAllChannels;
-  std::optional<Stencil> stencil{};  // else no test
+  std::optional<Stencil> stencil{};       // else no test
+  std::optional<Stencil> stencil_back{};  // of back faces; else as that of front faces
+  // The whole stencil buffer was cleared to this, 0..255, right before the draw.
+  std::optional<std::uint32_t> stencil_cleared_to{};
   bool operator==(const DrawState&) const = default;
 };
 

@@ -91,6 +91,7 @@ inline constexpr std::size_t kMostLights = 16;
 struct Frame {
   std::uint32_t width = 0, height = 0;  // pixels, each 1..16384
   glm::vec3 background{0.0f};
+  float background_alpha = 1;    // what blend functions read of the destination's alpha where nothing was drawn
   std::optional<Camera> camera;  // if the trace names one; `view` and `projection` are made from it
   glm::dmat4 view{1.0}, projection{1.0};
   Lighting lighting;

@@ -1,6 +1,7 @@
 #include "pipeline/bins/frame_context.h"
 
 #include "pipeline/bins/timeline.h"
+#include "stages/geometry/draw_plan.h"
 #include "stages/geometry/vertex_setup.h"
 #include "stages/surface/sheets.h"
 #include "stages/surface/sheets_cost.h"
@@ -29,6 +30,10 @@ const SetupTriangles& without_refused(SetupTriangles& triangles, const Frame& fr
   return shared || own ? without_refused(triangles, frame, (shared ? *shared : *own).programs()) : triangles;
 }
 
+DrawOrder order_for(const FrameJob& job, DrawOrder possible) {
+  return possible == DrawOrder::of_api && needs_api_order(job.trace, job.frame) ? possible : DrawOrder::by_depth;
+}
+
 // Are there draws whose vertices have moved within their mesh since the last frame?
 bool has_deformed_draws(const FrameJob& job) {
   return job.run.history && job.run.history->frames > 0 &&
@@ -37,13 +42,14 @@ bool has_deformed_draws(const FrameJob& job) {
 
 }  // namespace
 
-FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
+FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules, DrawOrder order)
     : trace(job.trace),
       frame(job.frame),
       run(job.run),
       sinks(job.sinks),
       background(stored(job.frame)),
-      triangles(vertex_setup(trace, frame, StageTimer(sinks.timeline)(setup), has_deformed_draws(job))),
+      triangles(vertex_setup(trace, frame, StageTimer(sinks.timeline)(setup), has_deformed_draws(job),
+                             order_for(job, order))),
       surface_bytes(setup.bytes_written -
                     triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))),
       own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt
@@ -55,8 +61,13 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
              with_input(rules, run)) {
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
     if (triangles.is_opaque(i)) continue;
-    (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
+    if (shader.is_cutout(i)) {
+      has_cutouts_ = true;
+    } else if (triangles.order == DrawOrder::by_depth) {
+      has_blending_ = true;
+    }
   }
+  if (triangles.order == DrawOrder::of_api) rop.emplace(trace, frame, background);
   if (rules.takes_positions && has_alpha()) prepare_alpha_mask();
   has_textures_ = !shader.is_flat() && !(job.trace.images.empty() && job.trace.program_images.empty());
   if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);

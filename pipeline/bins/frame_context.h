@@ -6,6 +6,7 @@
 #include "pipeline/technique.h"
 #include "stages/cost/counters.h"
 #include "stages/data/setup_triangle.h"
+#include "stages/rop/rop_rules.h"
 #include "stages/surface/surface_shader.h"
 #include "traces/trace.h"
 
@@ -23,14 +24,16 @@ struct FrameContext {
   std::optional<TextureSet> own_textures;
   SurfaceShader shader;
   std::optional<TextureLayout> texture_layout;  // if memory is modelled and triangles have textures
+  std::optional<RopRules> rop;                  // if draws are drawn in the API's order
 
-  // Runs vertex_setup and the flat triangles' shader, and if the rules take positions, all that alpha_mask needs. The
-  // job's trace, frame and `run` must outlive it.
-  explicit FrameContext(const FrameJob& job, const ShadingRules& rules = {});
+  // Runs vertex_setup and the flat triangles' shader, and if the rules take positions, all that alpha_mask needs.
+  // `order`: in which the technique can draw; it matters only to frames that need the API's. The job's trace, frame and
+  // `run` must outlive it.
+  explicit FrameContext(const FrameJob& job, const ShadingRules& rules = {}, DrawOrder order = DrawOrder::by_depth);
   FrameContext(const FrameContext&) = delete;
   FrameContext& operator=(const FrameContext&) = delete;
 
-  // Does a triangle let through what lies behind it, somewhere?
+  // Does a triangle let through what lies behind it, somewhere? In the API's order, only cutouts do.
   bool has_alpha() const { return has_cutouts_ || has_blending_; }
   bool has_cutouts() const { return has_cutouts_; }
   bool has_blending() const { return has_blending_; }

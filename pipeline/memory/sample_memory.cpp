@@ -57,18 +57,44 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
                           StageCounters& counters) {
   if (!modelled_) return;
   write_color = write_color && color_;
-  const auto all = static_cast<std::uint32_t>((std::uint64_t{1} << samples_) - 1);
   for (const SampleAccess& access : accesses) {
     const std::uint32_t position = cell_position_[access.cell];
     const std::size_t first = std::size_t{position} * samples_;
     depth_.access_at(access.triangle, position, access.tested, write_depth ? access.passed : 0, counters);
     if (write_color) color_->access_at(access.triangle, position, 0, access.passed, counters);
-    if (access.passed == all) {
-      std::fill_n(owner_.begin() + static_cast<std::ptrdiff_t>(first), samples_, access.triangle);
-      continue;
-    }
-    for (std::uint32_t left = access.passed; left != 0; left &= left - 1)
-      owner_[first + static_cast<std::size_t>(std::countr_zero(left))] = access.triangle;
+    own(first, access.passed, access.triangle, owner_);
+  }
+}
+
+// `first`: of the cell's samples.
+void SampleMemory::own(std::size_t first, std::uint32_t samples, std::uint32_t triangle,
+                       std::vector<std::uint32_t>& owner) const {
+  if (covers_cell(samples)) {
+    std::fill_n(owner.begin() + static_cast<std::ptrdiff_t>(first), samples_, triangle);
+    return;
+  }
+  for (std::uint32_t left = samples; left != 0; left &= left - 1)
+    owner[first + static_cast<std::size_t>(std::countr_zero(left))] = triangle;
+}
+
+void SampleMemory::test_in_order(const std::vector<OrderedAccess>& accesses, StageCounters& counters) {
+  if (!modelled_) return;
+  for (const OrderedAccess& access : accesses) {
+    const std::uint32_t position = cell_position_[access.cell];
+    depth_.access_at(access.triangle, position, access.read, access.written, counters);
+    own(std::size_t{position} * samples_, access.written, access.triangle, owner_);
+  }
+}
+
+void SampleMemory::blend_in_order(const std::vector<OrderedAccess>& accesses, StageCounters& counters) {
+  if (!modelled_ || !color_) return;
+  color_owner_.resize(owner_.size(), kNoTriangle);
+  for (const OrderedAccess& access : accesses) {
+    const std::uint32_t position = cell_position_[access.cell];
+    color_->access_at(access.triangle, position, access.read, access.written, counters);
+    // What is blended with all samples of a cell leaves equal ones equal.
+    if (access.read == 0 || !covers_cell(access.written))
+      own(std::size_t{position} * samples_, access.written, access.triangle, color_owner_);
   }
 }
 
@@ -91,6 +117,7 @@ void SampleMemory::flush(StageCounters& counters) {
   depth_.flush(counters);
   if (color_) color_->flush(counters);
   std::fill(owner_.begin(), owner_.end(), kNoTriangle);  // the next pass writes another, cleared surface
+  std::fill(color_owner_.begin(), color_owner_.end(), kNoTriangle);
 }
 
 void SampleMemory::add_bytes(std::vector<float>& pixels) const {
@@ -133,7 +160,7 @@ std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements)
 std::uint32_t SampleMemory::color_bytes(std::size_t first, std::size_t elements) const {
   const auto compressed = static_cast<std::uint32_t>(elements) * color_sample_bytes_;
   for (std::size_t element = first; element < std::min(first + elements, order_.positions); ++element) {
-    const std::uint32_t* const owners = &owner_[element * samples_];
+    const std::uint32_t* const owners = &(color_owner_.empty() ? owner_ : color_owner_)[element * samples_];
     if (all_equal(owners, samples_)) continue;
     for (std::size_t sample = 1; sample < samples_; ++sample) {
       if (owners[sample] == owners[sample - 1]) continue;

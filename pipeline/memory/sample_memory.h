@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/memory/tile_surface.h"
+#include "stages/data/ordered_tile.h"
 #include "stages/samples/test_depth.h"
 
 namespace beampipe {
@@ -37,6 +38,10 @@ class SampleMemory {
   // Reads the colours of samples that pass, and writes them again.
   void blend(const std::vector<SampleAccess>& accesses, StageCounters& counters);
 
+  // In the API's order: depths that are read and written, and colours.
+  void test_in_order(const std::vector<OrderedAccess>& accesses, StageCounters& counters);
+  void blend_in_order(const std::vector<OrderedAccess>& accesses, StageCounters& counters);
+
   SampleMemory(const SampleMemory&) = delete;
   SampleMemory& operator=(const SampleMemory&) = delete;
 
@@ -52,6 +57,8 @@ class SampleMemory {
 
  private:
   void replay(const std::vector<SampleAccess>& accesses, bool write_depth, bool write_color, StageCounters& counters);
+  bool covers_cell(std::uint32_t samples) const { return samples == (std::uint64_t{1} << samples_) - 1; }
+  void own(std::size_t first, std::uint32_t samples, std::uint32_t triangle, std::vector<std::uint32_t>& owner) const;
   std::uint32_t depth_bytes(std::size_t first, std::size_t elements);
   std::uint32_t color_bytes(std::size_t first, std::size_t elements) const;
 
@@ -63,8 +70,9 @@ class SampleMemory {
   std::vector<std::uint32_t> cell_position_;  // of each cell in the Z order
   SameValue same_value_;
   std::uint32_t color_sample_bytes_;
-  std::vector<std::uint32_t> owner_;   // triangle of each sample that this pass has written, in Z order
-  std::vector<std::uint32_t> planes_;  // of the block that is compressed; kept so that it is allocated once
+  std::vector<std::uint32_t> owner_;        // triangle of each sample that this pass has written, in Z order
+  std::vector<std::uint32_t> color_owner_;  // of its colour, where draws keep the API's order; else empty
+  std::vector<std::uint32_t> planes_;       // of the block that is compressed; kept so that it is allocated once
   TileSurface depth_;
   std::optional<TileSurface> color_;
 };

@@ -9,6 +9,7 @@
 #include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
+#include "pipeline/units/ordered_unit.h"
 #include "pipeline/units/raster_units.h"
 #include "pipeline/units/temporal_units.h"
 
@@ -45,6 +46,10 @@ Framebuffer msaa_framebuffer(const MsaaOptions& options) {
   return {.surfaces = surfaces, .bin_size = bin_size(options.samples), .needs_bins = options.motion};
 }
 
+bool needs_resolve(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory) {
+  return samples > 1 || framebuffer.is_on_chip(memory);
+}
+
 // How far each pixel moved; 0 if its surface was behind the eye.
 void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& lengths) {
   for (std::size_t i = 0; i < vectors.size(); ++i) {
@@ -53,8 +58,27 @@ void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& len
   }
 }
 
+// A pass of its own, or another order, is none that the API's order has.
+bool keeps_api_order(const MsaaOptions& options) {
+  return !options.prepass && !options.motion && !options.sorts_translucent;
+}
+
+FrameResult render_in_api_order(const FrameContext& context, const MsaaOptions& options, const Sampling& sampling) {
+  const Framebuffer framebuffer = msaa_framebuffer(options);
+  BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::blend},
+               .framebuffer = framebuffer};
+  if (needs_resolve(framebuffer, options.samples, context.run.memory)) plan.stages.push_back(StageId::resolve);
+  return render_bins(context, plan, [&](Bin& bin) {
+    OrderedUnit surface(bin, sampling, format_of(options).channel, color_bytes(options));
+    surface.draw(options.at, options.alpha);
+    bin.finish(surface.resolve_samples(options.space));
+  });
+}
+
 FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options, const Sampling& sampling) {
-  const FrameContext context(job, {.derivatives = Derivatives::quad, .stored_as = format_of(options).channel});
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .stored_as = format_of(options).channel},
+                             keeps_api_order(options) ? DrawOrder::of_api : DrawOrder::by_depth);
+  if (context.rop) return render_in_api_order(context, options, sampling);
   History first;
   History& history = job.run.history ? *job.run.history : first;
   std::optional<FrameMotion> motion;
@@ -85,6 +109,7 @@ Technique technique_of(const MsaaOptions& options, const Sampling& sampling) {
           .rounding_error = options.color == SampleColor::rgba8 ? 0.5 / 255 : kFp16Error,
           .renderer = bind_options(render_msaa, options, sampling),
           .is_observable = true,
+          .keeps_api_order = keeps_api_order(options),
           .keeps_history = options.motion};
 }
 
@@ -92,7 +117,7 @@ Technique technique_of(const MsaaOptions& options, const Sampling& sampling) {
 
 std::vector<StageId> forward_stages(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory) {
   std::vector<StageId> stages = {StageId::sample_raster, StageId::shade, StageId::depth_test};
-  if (samples > 1 || framebuffer.is_on_chip(memory)) stages.push_back(StageId::resolve);
+  if (needs_resolve(framebuffer, samples, memory)) stages.push_back(StageId::resolve);
   return stages;
 }
 

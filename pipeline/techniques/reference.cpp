@@ -2,6 +2,7 @@
 // of samples tell how far it errs.
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
+#include "stages/raster/ordered_reference.h"
 #include "stages/raster/reference_raster.h"
 
 namespace beampipe {
@@ -29,10 +30,10 @@ Framebuffer reference_framebuffer(const ReferencePattern& pattern) {
 FrameResult render_reference(const FrameJob& job, const ReferencePattern& pattern) {
   FrameInput without_memory = job.run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
-  const FrameContext context({job.trace, job.frame, without_memory, job.sinks});
+  const FrameContext context({job.trace, job.frame, without_memory, job.sinks}, {}, DrawOrder::of_api);
   const BinPlan plan{.stages = {StageId::reference_raster, StageId::resolve},
                      .framebuffer = reference_framebuffer(pattern),
-                     .translucent_pair_bytes = layer_bytes(pattern)};
+                     .translucent_pair_bytes = context.rop ? 0 : layer_bytes(pattern)};
   return render_bins(context, plan, [&](Bin& bin) {
     const BinStage resolving = bin.stage(StageId::resolve);
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up
@@ -42,8 +43,12 @@ FrameResult render_reference(const FrameJob& job, const ReferencePattern& patter
     }
     const TileShader shader = bin.shader();
     ReferenceTile samples(bin.tile, pattern);
-    reference_raster(context.triangles, bin.list, bin.tile, bin.stage(StageId::reference_raster).timed(), samples,
-                     &shader);
+    const BinStage drawing = bin.stage(StageId::reference_raster);
+    if (context.rop) {
+      ordered_reference(context.triangles, bin.list, bin.tile, *context.rop, shader, drawing.timed(), samples);
+    } else {
+      reference_raster(context.triangles, bin.list, bin.tile, drawing.timed(), samples, &shader);
+    }
     bin.finish(resolve(samples, bin.tile, shader, context.background, resolving.timed()));
   });
 }
@@ -66,7 +71,8 @@ TechniqueKind reference_kind() {
               [](const ReferencePattern& pattern) {
                 return Technique{.framebuffer = reference_framebuffer(pattern),
                                  .rounding_error = kReferenceError,
-                                 .renderer = bind_options(render_reference, pattern)};
+                                 .renderer = bind_options(render_reference, pattern),
+                                 .keeps_api_order = true};
               })};
 }
 

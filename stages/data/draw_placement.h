@@ -6,6 +6,10 @@
 
 namespace beampipe {
 
+// What decides between triangles in a pixel: their depths, which express the order of draws as far as depths can; or
+// the API's order of draws, with its tests (stages/rop/rop_rules.h).
+enum class DrawOrder { by_depth, of_api };
+
 struct DrawPlacement {
   static constexpr std::int32_t kNoSide = 1 << 23;  // the guard band
 

@@ -93,7 +93,7 @@ std::uint32_t PixelObserver::fragment_of(std::uint32_t triangle, Fate fate) {
 
 void PixelObserver::take(std::size_t position, std::uint32_t fragment) {
   std::uint32_t& owner = history.owners[position];
-  if (position < layers_.size()) layers_[position].clear();
+  if (position < layers_.size()) layers_[position].clear(), behind_layers_[position] = 1;
   if (owner == fragment) return;
   count_move(owner, history.fragments[fragment].taken);
   if (owner != kNobody) count_move(fragment, history.fragments[owner].lost);
@@ -272,10 +272,13 @@ void PixelObserver::composes(std::uint32_t positions, double area, const glm::ve
   history.steps.push_back(step);
 }
 
-void PixelObserver::blends(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color) {
+void PixelObserver::blends(std::uint32_t triangle, std::size_t position, double added, double kept,
+                           const glm::dvec3& color) {
   layers_.resize(history.positions.size());
-  for (HistoryTerm& layer : layers_[position]) layer.weight *= 1 - alpha;
-  layers_[position].push_back({blended_fragment(triangle, position), alpha, color});
+  behind_layers_.resize(history.positions.size(), 1.0);
+  for (HistoryTerm& layer : layers_[position]) layer.weight *= kept;
+  behind_layers_[position] *= kept;
+  layers_[position].push_back({blended_fragment(triangle, position), added, color});
 }
 
 void PixelObserver::goes_over(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color) {
@@ -293,10 +296,7 @@ std::uint32_t PixelObserver::blended_fragment(std::uint32_t triangle, std::size_
 }
 
 double PixelObserver::seen_behind_layers(std::size_t position) const {
-  double seen = 1;
-  if (position >= layers_.size()) return seen;
-  for (const HistoryTerm& layer : layers_[position]) seen -= layer.weight;
-  return seen;
+  return position < behind_layers_.size() ? behind_layers_[position] : 1.0;
 }
 
 void PixelObserver::adds_samples(std::uint32_t triangle, std::size_t begin, std::size_t end, double share,

@@ -105,7 +105,11 @@ class PixelObserver {
   // ---- Samples with translucent layers ----
 
   // A translucent triangle goes over the layers of a position.
-  void blends(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color);
+  void blends(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color) {
+    blends(triangle, position, alpha, 1 - alpha, color);
+  }
+  // The same with any factor of the colour, and any of what is there.
+  void blends(std::uint32_t triangle, std::size_t position, double added, double kept, const glm::dvec3& color);
 
   // Adds positions [begin, end) with their layers, over a triangle or the background. `share`: weight of each.
   void adds_samples(std::uint32_t triangle, std::size_t begin, std::size_t end, double share, const glm::dvec3& color);
@@ -139,6 +143,7 @@ class PixelObserver {
   std::vector<Final> finals_;
   HeldSurface aggregate_;                         // as it was composed last
   std::vector<std::vector<HistoryTerm>> layers_;  // by position; empty if nothing is translucent
+  std::vector<double> behind_layers_;             // what layers leave of what lies behind them, by position
 };
 
 // Of the pixels of a tile, row by row; null where nobody looks.

@@ -52,6 +52,8 @@ struct SetupTriangles {
   std::vector<std::uint32_t> trace_triangles;
   std::vector<SurfaceVertex> vertices;    // of the draws with materials
   std::vector<DrawPlacement> placements;  // one per draw of the frame; empty if no draw has state
+  DrawOrder order =
+      DrawOrder::by_depth;  // in the API's order, triangles are in primitive order, and depths lie in -1..0
 
   bool is_opaque(std::uint32_t triangle) const { return surfaces.empty() || surfaces[triangle].is_opaque; }
 

@@ -78,6 +78,7 @@ struct SetupSurface {
   std::uint32_t trace_triangle = 0;         // index into the triangles of its draw's mesh
   std::array<std::uint32_t, 3> vertices{};  // of that triangle: indices into SetupTriangles::vertices
   bool is_opaque = true;                    // it hides what lies behind it, wherever it covers
+  bool is_blended = false;                  // by its material
   bool turned = false;                      // the viewer sees its back: vertices' normals are turned around
   bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used
   glm::vec4 tangent{0.0f};           // of the triangle, w: sign of the bitangent; where a normal texture needs it

@@ -249,7 +249,7 @@ bool is_translucent(const Trace& trace, const Draw& draw) {
     return material != kNoMaterial && trace.materials[material].alpha_mode == AlphaMode::blend;
   };
   if (draw.kd) return false;
-  if (draw.program) return program_alpha_mode(trace, draw) == AlphaMode::blend;
+  if (draw.program) return program_alpha_mode(trace, draw, DrawOrder::by_depth) == AlphaMode::blend;
   if (draw.material) return is_blended(*draw.material);
   return std::ranges::any_of(trace.meshes[draw.mesh].materials, is_blended);
 }

@@ -68,22 +68,35 @@ void place_on_screen(const DrawState& state, double width, double height, DrawPl
   if (bottom < height) placement.bottom = sides[3];
 }
 
+// The frame's depth is window depth minus 1.
+void keep_depths(const DepthState& depth, DrawPlacement& placement) {
+  placement.depth_scale = double{depth.far} - double{depth.near};
+  placement.depth_offset = double{depth.far} - 1;
+  placement.bias_constant = depth.bias.constant, placement.bias_slope = depth.bias.slope;
+  placement.bias_clamp = depth.bias.clamp;
+}
+
 class Planner {
  public:
   Planner(const Trace& trace, const Frame& frame) : trace_(trace), frame_(frame), is_pre_pass_(frame.draws.size()) {
     plan.placements.resize(frame.draws.size());
   }
 
-  void run() {
+  void run(DrawOrder draw_order) {
     for (std::uint32_t i = 0; i < frame_.draws.size(); ++i) {
       const Draw& draw = frame_.draws[i];
       DrawPlacement& placement = plan.placements[i];
       placement.clips_depth = draw.state.depth.clip;
       place_on_screen(draw.state, frame_.width, frame_.height, placement);
+      if (draw_order == DrawOrder::of_api) {
+        keep_depths(draw.state.depth, placement);
+        continue;
+      }
       if (!placement.is_drawn) continue;
       placement.is_drawn = can_draw(draw, placement);
       is_pre_pass_[i] = is_pre_pass(draw.state);
     }
+    if (draw_order == DrawOrder::of_api) return;
     const std::vector<std::uint32_t> geometry = geometry_numbers(trace_, frame_);
     note_lone_pre_passes(geometry);
     order_depths(trace_, frame_, geometry, plan.placements, plan.notes);
@@ -153,11 +166,18 @@ class Planner {
 
 }  // namespace
 
-DrawPlan plan_draws(const Trace& trace, const Frame& frame) {
+DrawPlan plan_draws(const Trace& trace, const Frame& frame, DrawOrder order) {
   if (std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.state == DrawState{}; })) return {};
   Planner planner(trace, frame);
-  planner.run();
+  planner.run(order);
   return std::move(planner.plan);
+}
+
+bool needs_api_order(const Trace& trace, const Frame& frame) {
+  const auto is_blended = [&](const Draw& draw) {
+    return draw.state.blend && !replaces(*draw.state.blend) && is_translucent(trace, draw);
+  };
+  return std::ranges::any_of(frame.draws, is_blended) || !plan_draws(trace, frame).notes.empty();
 }
 
 }  // namespace beampipe

@@ -1,9 +1,12 @@
 // Fixed-function state (traces/draw_state.h) -> where each draw of a frame goes, and what is left out.
 //
-// The techniques know one depth test, `less` against a depth that everything opaque writes, and one blend function. So
-// state is expressed by where triangles lie: viewports move them, viewports and scissors clip them, and the order of
-// painting becomes an order of depths (stages/geometry/depth_order.h). What cannot be expressed so is left out, or
-// drawn in the nearest way, and noted.
+// In the API's order, viewports, scissors, depth ranges and biases act here, and all else where fragments meet
+// (stages/rop/rop_rules.h). Nothing is left out.
+//
+// By depth, techniques know one depth test, `less` against a depth that everything opaque writes, and one blend
+// function. So state is expressed by where triangles lie: viewports move them, viewports and scissors clip them, and
+// the order of painting becomes an order of depths (stages/geometry/depth_order.h). What cannot be expressed so is left
+// out, or drawn in the nearest way, and noted.
 //
 // Left out: stencil tests other than `always`; blending that is neither alpha blending nor replacing; draws that write
 // no colour. Of the latter, those are not noted that change nothing: a depth pre-pass whose triangles a later draw with
@@ -23,6 +26,10 @@ struct DrawPlan {
   std::vector<DrawNote> notes;
 };
 
-DrawPlan plan_draws(const Trace& trace, const Frame& frame);
+DrawPlan plan_draws(const Trace& trace, const Frame& frame, DrawOrder order = DrawOrder::by_depth);
+
+// Do the frame's draws ask for what depths cannot express? That is so if something is noted above, or if a draw is
+// blended by its state, because blending depends on the order.
+bool needs_api_order(const Trace& trace, const Frame& frame);
 
 }  // namespace beampipe

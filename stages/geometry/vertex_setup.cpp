@@ -240,6 +240,7 @@ struct DrawJob {
   std::uint32_t index;         // of the draw in the frame
   std::uint32_t first_vertex;  // where its vertices start in SetupTriangles::vertices, or kNoVertices
   bool numbers_triangles;
+  DrawOrder order;
 };
 
 // Sets up triangles of one draw and appends them to `out`. Depth planes and normals are found for a block of triangles
@@ -253,7 +254,7 @@ class TriangleSetup {
         materials_(job.trace.materials),
         mesh_(job.trace.meshes[job.draw.mesh]),
         draw_(job.draw),
-        program_mode_(job.draw.program ? program_alpha_mode(job.trace, job.draw) : AlphaMode::opaque),
+        program_mode_(job.draw.program ? program_alpha_mode(job.trace, job.draw, job.order) : AlphaMode::opaque),
         first_vertex_(job.first_vertex),
         transform_mirrors_(glm::determinant(glm::dmat3(job.draw.transform)) < 0),
         to_world_(elements_of(job.draw.transform)),
@@ -445,6 +446,7 @@ class TriangleSetup {
     surface.trace_triangle = static_cast<std::uint32_t>(t);
     const AlphaMode mode = has_program ? program_mode_ : materials_[material].alpha_mode;
     surface.is_opaque = mode == AlphaMode::opaque || (mode == AlphaMode::blend && screen_.placement.is_opaque);
+    surface.is_blended = !has_program && mode == AlphaMode::blend;
     for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];
     surface.turned = shows_back(front);
     surface.has_own_normal = mesh_.normals.empty();
@@ -587,7 +589,7 @@ void put_winners_first(const Trace& trace, const Frame& frame, SetupTriangles& a
   const auto is_blended = [&](std::uint32_t i) {
     if (all.is_opaque(i)) return false;
     const std::uint32_t material = all.surfaces[i].material;
-    return (material == kProgramSurface ? program_alpha_mode(trace, frame.draws[all.draws[i]])
+    return (material == kProgramSurface ? program_alpha_mode(trace, frame.draws[all.draws[i]], all.order)
                                         : trace.materials[material].alpha_mode) == AlphaMode::blend;
   };
   const auto wins = [&](std::uint32_t i) { return all.placements[all.draws[i]].last_wins && !is_blended(i); };
@@ -610,12 +612,14 @@ void put_winners_first(const Trace& trace, const Frame& frame, SetupTriangles& a
 
 }  // namespace
 
-SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters, bool numbers_triangles) {
+SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters, bool numbers_triangles,
+                            DrawOrder order) {
   SetupTriangles out;
   const View view(frame);
   SetupWork work;
   counters.stage = StageId::vertex_setup;
-  out.placements = plan_draws(trace, frame).placements;
+  out.placements = plan_draws(trace, frame, order).placements;
+  out.order = order;
   constexpr DrawPlacement kDefault{};
   const auto placement_of = [&](std::size_t i) -> const DrawPlacement& {
     return out.placements.empty() ? kDefault : out.placements[i];
@@ -638,7 +642,8 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
                       .placement = placement_of(i),
                       .index = i,
                       .first_vertex = has_materials ? first_vertex : kNoVertices,
-                      .numbers_triangles = numbers_triangles},
+                      .numbers_triangles = numbers_triangles,
+                      .order = order},
                      out);
     if (has_material(draw, mesh)) {
       work.shaded_vertices += mesh.positions.size();

@@ -119,4 +119,37 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   return image;
 }
 
+std::vector<glm::vec4> resolve(const OrderedTile& surface, std::size_t pixels, const glm::vec3& background,
+                               ResolveSpace space, StageCounters& counters) {
+  const std::size_t samples = surface.samples_per_pixel;
+  const double share = 1.0 / static_cast<double>(samples);
+  std::vector<glm::vec4> image;
+  image.reserve(pixels);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    PixelObserver* const observer = observer_at(surface.observers, pixel);
+    glm::dvec3 sum(0.0);
+    double drawn = 0;
+    for (std::size_t s = 0; s < samples; ++s) {
+      glm::dvec3 color = surface.color[pixel * samples + s];
+      double weight = share;
+      if (space == ResolveSpace::reinhard) {
+        weight /= 1.0 + luminance(&color.x);
+        compress(&color.x);
+      }
+      sum += color;
+      drawn += surface.is_drawn[pixel * samples + s];
+      if (observer)
+        observer->adds_samples(kNobody, surface.first_observed + s, surface.first_observed + s + 1, weight, background);
+    }
+    glm::dvec3 mean = sum * share;
+    if (observer && space == ResolveSpace::reinhard) observer->scales(1.0 / (1.0 - luminance(&mean.x)));
+    if (space == ResolveSpace::reinhard) expand(&mean.x);
+    image.emplace_back(glm::vec3(mean), static_cast<float>(drawn * share));
+  }
+  OperationCounts cost = box_filter_cost(samples);
+  if (space == ResolveSpace::reinhard) cost += reinhard_cost(samples);
+  charge_resolve(pixels * samples, surface.color_bytes, pixels, cost, counters);
+  return image;
+}
+
 }  // namespace beampipe

@@ -7,6 +7,7 @@
 
 #include "simd/merge.h"
 #include "stages/cost/counters.h"
+#include "stages/data/ordered_tile.h"
 #include "stages/data/pixel_formats.h"
 #include "stages/data/sample_tile.h"
 #include "stages/surface/surface_shader.h"
@@ -43,5 +44,9 @@ struct ResolveOptions {
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters,
                                const ResolveOptions& options = {});
+
+// The same of samples that have their colours. `background`: what observers hear of it.
+std::vector<glm::vec4> resolve(const OrderedTile& surface, std::size_t pixels, const glm::vec3& background,
+                               ResolveSpace space, StageCounters& counters);
 
 }  // namespace beampipe

@@ -12,55 +12,10 @@
 #include "stages/data/mix_bits.h"
 #include "stages/raster/cutout_cells.h"
 #include "stages/raster/reference_raster_cost.h"
+#include "stages/raster/reference_spans.h"
 
 namespace beampipe {
 namespace {
-
-// A cell has 16 rows of one sample each.
-constexpr std::int32_t kRowsPerCell = 16;
-
-// Sample positions are integers in ReferencePattern::units(), 1/8192 px: x = 512 i + 2 reverse(row) + 1,
-// y = 32 row + 16.
-struct Steps {
-  explicit Steps(const ReferencePattern& pattern)
-      : units(pattern.units()), x(units / pattern.columns), y(units / pattern.rows()), scale(units / kSubpixelUnits) {}
-
-  std::int64_t units;  // per pixel
-  std::int64_t x, y;   // between samples of a row, and between rows
-  std::int64_t scale;  // per 1/256 px
-};
-
-std::int64_t floor_quotient(std::int64_t dividend, std::int64_t divisor) {  // divisor > 0
-  const std::int64_t quotient = dividend / divisor;
-  return quotient - (dividend % divisor < 0);
-}
-
-// Samples [first, end) of a sample row, in frame coordinates.
-struct Span {
-  std::int64_t first, end;
-};
-
-// Keeps the samples i at which a (step i + offset) + rest >= 0.
-void cut(Span& span, std::int64_t a, std::int64_t step, std::int64_t offset, std::int64_t rest) {
-  const std::int64_t at_zero = a * offset + rest, per_sample = a * step;
-  if (per_sample == 0) {
-    if (at_zero < 0) span.end = span.first;
-  } else if (per_sample > 0) {
-    span.first = std::max(span.first, -floor_quotient(at_zero, per_sample));
-  } else {
-    span.end = std::min(span.end, floor_quotient(at_zero, -per_sample) + 1);
-  }
-}
-
-// A run of samples in a row.
-struct SampleRun {
-  const Tile& tile;
-  const ReferencePattern& pattern;
-  std::int64_t row, column;  // of the first sample, in the frame
-  std::int64_t x, y;         // of its place in the pixel, in units
-  std::uint32_t at;          // its index in the tile
-  std::size_t count;
-};
 
 // Lists the samples of a run that a translucent triangle may be seen at. Returns how many.
 std::uint64_t list_layers(const DepthSpan& span, std::uint32_t triangle, const SampleRun& run, ReferenceTile& surface) {
@@ -76,39 +31,16 @@ std::uint64_t list_layers(const DepthSpan& span, std::uint32_t triangle, const S
 }
 
 // Takes the samples of a run at which a cutout is there. Returns how many.
-std::uint64_t take_cutout(const DepthSpan span, std::uint32_t triangle, const SampleRun& run, const TileShader& shader,
+std::uint64_t take_cutout(const DepthSpan& span, std::uint32_t triangle, const SampleRun& run, const TileShader& shader,
                           CutoutCells& cells, ReferenceTile& surface) {
-  const float unit = 1.0f / static_cast<float>(run.pattern.units());
-  const int log_columns = std::countr_zero(static_cast<std::uint32_t>(run.pattern.columns));
-  const std::int64_t last_column = run.pattern.columns - 1, step = run.pattern.units() / run.pattern.columns;
-  const auto pixel_y = static_cast<std::int32_t>(floor_quotient(run.row, run.pattern.rows()));
-  const auto cell_row = static_cast<std::int32_t>((run.row & (run.pattern.rows() - 1)) / kRowsPerCell);
-  const float v = static_cast<float>(run.y) * unit, cutoff = shader.alpha_cutoff(triangle);
-  double* const depths = surface.depth.data() + run.at;
-  std::uint64_t* const owners = surface.owner.data() + run.at;
   std::uint64_t found = 0;
-  for (std::size_t i = 0; i < run.count;) {
-    const std::int64_t first = run.column + static_cast<std::int64_t>(i);
-    const auto pixel =
-        static_cast<std::uint32_t>(run.tile.index(static_cast<std::int32_t>(first >> log_columns), pixel_y));
-    const std::size_t end = std::min(run.count, i + static_cast<std::size_t>(last_column - (first & last_column)) + 1);
-    const CutoutCover of_pixel = cells.of_pixel(pixel);
-    if (of_pixel == CutoutCover::none) i = end;
-    for (; i < end; ++i) {
-      double depth = 0;
-      if (!depth_span_sample(span, static_cast<double>(i), depths[i], depth)) continue;
-      if (of_pixel == CutoutCover::mixed) {
-        const std::int64_t column = (run.column + static_cast<std::int64_t>(i)) & last_column;
-        const CutoutCover cover = cells.of_cell(pixel, static_cast<std::int32_t>(column), cell_row);
-        if (cover == CutoutCover::none) continue;
-        const float u = static_cast<float>(run.x + step * column) * unit;
-        if (cover == CutoutCover::mixed && shader.alpha(triangle, pixel, u, v, 0.0f) < cutoff) continue;
-      }
-      ++found;
-      depths[i] = depth;
-      owners[i] = triangle;
-    }
-  }
+  for_each_sample(run, triangle, shader, cells, [&](std::size_t i, const auto& is_there) {
+    double depth = 0;
+    if (!depth_span_sample(span, static_cast<double>(i), surface.depth[run.at + i], depth) || !is_there()) return;
+    ++found;
+    surface.depth[run.at + i] = depth;
+    surface.owner[run.at + i] = triangle;
+  });
   return found;
 }
 
@@ -140,50 +72,23 @@ ReferenceTile::ReferenceTile(const Tile& tile, const ReferencePattern& of)
 
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                       StageCounters& counters, ReferenceTile& surface, const TileShader* shader) {
-  const ReferencePattern& pattern = surface.pattern;
-  const Steps steps(pattern);
-  const std::int64_t left = std::int64_t{tile.x0} * pattern.columns, right = std::int64_t{tile.x1} * pattern.columns;
-  const std::int64_t top = std::int64_t{tile.y0} * pattern.rows(), bottom = std::int64_t{tile.y1} * pattern.rows();
-  std::vector<ReferencePattern::Place> places;  // of each row's first sample, in the frame's first column of pixels
-  for (std::int64_t row = top; row < bottom; ++row) {
-    places.push_back(pattern.first_in_row(row));
-    places.back().y += floor_quotient(row, pattern.rows()) * steps.units;
-  }
+  const SpanPlaces places(tile, surface.pattern);
   std::optional<CutoutCells> cells;
   std::uint64_t covered = 0, nearer = 0;  // samples
   for (const std::uint32_t index : list) {
-    const SetupTriangle& t = triangles.triangles[index];
-    const auto [y_low, y_high] = std::minmax({t.y[0], t.y[1], t.y[2]});
     if (shader && shader->is_cutout(index)) {
-      if (!cells) cells.emplace(*shader, tile, pattern.columns);
+      if (!cells) cells.emplace(*shader, tile, surface.pattern.columns);
       cells->start(index);
     }
-    const Edge edges[3] = {edge_of(t, 0), edge_of(t, 1), edge_of(t, 2)};
-    const std::int64_t first_row = std::max(top, floor_quotient(y_low * steps.scale, steps.y));
-    const std::int64_t end_row = std::min(bottom, floor_quotient(y_high * steps.scale, steps.y) + 1);
-    for (std::int64_t row = first_row; row < end_row; ++row) {
-      const auto [offset, y] = places[static_cast<std::size_t>(row - top)];
-      Span span{left, right};
-      for (const Edge& edge : edges)
-        cut(span, edge.a, steps.x, offset, edge.b * y + edge.c * steps.scale - (edge.owns ? 0 : 1));
-      if (span.first >= span.end) continue;
-      const double unit = 1.0 / static_cast<double>(steps.units);
-      const DepthSpan depths{t.depth.z, t.depth.dzdx, t.depth.dzdy * (static_cast<double>(y) * unit - t.depth.anchor_y),
-                             static_cast<double>(span.first * steps.x + offset) * unit - t.depth.anchor_x,
-                             static_cast<double>(steps.x) * unit};
-      const std::size_t at =
-          static_cast<std::size_t>(row - top) * surface.row_samples + static_cast<std::size_t>(span.first - left);
-      const auto count = static_cast<std::size_t>(span.end - span.first);
-      covered += count;
+    places.for_each_run(triangles.triangles[index], [&](const SampleRun& run, const DepthSpan& depths) {
+      covered += run.count;
       if (triangles.is_opaque(index)) {
-        nearer += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
-        continue;
+        nearer += depth_span(depths, run.count, index, surface.depth.data() + run.at, surface.owner.data() + run.at);
+        return;
       }
-      const SampleRun run{tile, pattern, row, span.first, offset, y & (steps.units - 1), static_cast<std::uint32_t>(at),
-                          count};
       nearer += cells && shader->is_cutout(index) ? take_cutout(depths, index, run, *shader, *cells, surface)
                                                   : list_layers(depths, index, run, surface);
-    }
+    });
   }
   charge_reference(covered, nearer, counters);
 }
@@ -206,7 +111,24 @@ class PixelSum {
   void add_flat(const std::uint64_t* owner, glm::dvec3& sum) const {
     for (std::int32_t row = 0; row < rows_; ++row, owner += row_samples_)
       for (std::int32_t s = 0; s < columns_; ++s)
-        sum += owner[s] == kNoOwner ? clear_ : glm::dvec3(shader_.color(triangle_of(owner[s]), 0, 0, 0));
+        if (owner[s] != kColoredOwner)
+          sum += owner[s] == kNoOwner ? clear_ : glm::dvec3(shader_.color(triangle_of(owner[s]), 0, 0, 0));
+  }
+
+  // The samples that have their colours. `first`: of the pixel's first sample.
+  void add_colored(const ReferenceTile& surface, std::size_t first, glm::dvec3& sum) const {
+    for (std::int32_t row = 0; row < rows_; row += kRowsPerCell) {
+      for (std::int32_t column = 0; column < columns_; ++column) {
+        const std::size_t at = first + static_cast<std::size_t>(row) * row_samples_ + static_cast<std::size_t>(column);
+        if (surface.is_uniform[cell_of(at, row_samples_)]) {
+          if (surface.owner[at] == kColoredOwner) sum += double{kRowsPerCell} * glm::dvec3(surface.color[at]);
+          continue;
+        }
+        for (std::size_t k = 0; k < kRowsPerCell; ++k)
+          if (surface.owner[at + k * row_samples_] == kColoredOwner)
+            sum += glm::dvec3(surface.color[at + k * row_samples_]);
+      }
+    }
   }
 
   // All surfaces of the pixel are shaded side by side, which takes less time.
@@ -217,7 +139,7 @@ class PixelSum {
         add_cell(owner + static_cast<std::size_t>(row) * row_samples_ + column, row, column, parts);
     std::vector<Invocation> invocations;
     const auto is_varying = [&](const Part& part) {
-      return part.owner != kNoOwner && !shader_.is_flat(triangle_of(part.owner));
+      return part.owner < kColoredOwner && !shader_.is_flat(triangle_of(part.owner));
     };
     for (const Part& part : parts)
       if (is_varying(part))
@@ -226,9 +148,10 @@ class PixelSum {
     const std::vector<glm::vec3> colors = shader_.colors(invocations);
     auto next = colors.begin();
     for (const Part& part : parts)
-      sum += part.count * (part.owner == kNoOwner ? clear_
-                           : is_varying(part)     ? glm::dvec3(*next++)
-                                                  : glm::dvec3(shader_.color(triangle_of(part.owner), 0, 0, 0)));
+      if (part.owner != kColoredOwner)
+        sum += part.count * (part.owner == kNoOwner ? clear_
+                             : is_varying(part)     ? glm::dvec3(*next++)
+                                                    : glm::dvec3(shader_.color(triangle_of(part.owner), 0, 0, 0)));
   }
 
   // As add_varying, under the translucent layers of the pixel, which are sorted by sample and then by depth. `first`:
@@ -272,7 +195,7 @@ class PixelSum {
     if (shader_.is_flat()) return true;
     for (std::int32_t row = 0; row < rows_; ++row, owner += row_samples_)
       for (std::int32_t s = 0; s < columns_; ++s)
-        if (owner[s] != kNoOwner && !shader_.is_flat(triangle_of(owner[s]))) return false;
+        if (owner[s] < kColoredOwner && !shader_.is_flat(triangle_of(owner[s]))) return false;
     return true;
   }
 
@@ -362,6 +285,8 @@ std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, c
       } else {
         sum_of.add_varying(owner, static_cast<std::uint32_t>(tile.width() * y + x), sum);
       }
+      if (!surface.color.empty())
+        sum_of.add_colored(surface, static_cast<std::size_t>(owner - surface.owner.data()), sum);
       for (std::int32_t row = 0; row < pattern.rows(); ++row)
         for (std::int32_t s = 0; s < pattern.columns; ++s)
           covered +=

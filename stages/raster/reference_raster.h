@@ -40,12 +40,13 @@ struct ReferencePattern {
   Place first_in_row(std::int64_t row) const;
 };
 
-inline constexpr std::uint64_t kNoOwner = ~std::uint64_t{0};
+// An owner that is no triangle: the background, or that whose colour ReferenceTile::color has.
+inline constexpr std::uint64_t kNoOwner = ~std::uint64_t{0}, kColoredOwner = kNoOwner - 1;
 
 // The samples of a tile: sample rows from top to bottom, each across the whole tile.
 struct ReferenceTile {
   std::vector<double> depth;
-  std::vector<std::uint64_t> owner;  // index into SetupTriangles, or kNoOwner
+  std::vector<std::uint64_t> owner;  // index into SetupTriangles, or one of the above
   std::size_t row_samples = 0;
 
   // A translucent triangle at a sample.
@@ -56,6 +57,12 @@ struct ReferenceTile {
   };
   std::vector<Layer> layers;  // in primitive order; some may lie behind the owner
   ReferencePattern pattern;
+
+  // In the API's order (stages/raster/ordered_reference.h); else empty. A cell has one column and 16 rows, and the
+  // number of its rows times row_samples plus its column.
+  std::vector<glm::vec4> color;  // RGBA of samples that are kColoredOwner
+  std::vector<std::uint8_t> stencil;
+  std::vector<bool> is_uniform;  // of cells: is the colour of the first sample that of all?
 
   explicit ReferenceTile(const Tile& tile, const ReferencePattern& pattern = {});
 };

@@ -4,9 +4,9 @@
 
 namespace beampipe {
 
-AlphaMode program_alpha_mode(const Trace& trace, const Draw& draw) {
+AlphaMode program_alpha_mode(const Trace& trace, const Draw& draw, DrawOrder order) {
   constexpr Blend kReplaces{BlendFactor::one, BlendFactor::zero, BlendOperation::add};
-  if (draw.state.blend && *draw.state.blend != kReplaces) return AlphaMode::blend;
+  if (order == DrawOrder::by_depth && draw.state.blend && *draw.state.blend != kReplaces) return AlphaMode::blend;
   return may_discard(trace.programs[draw.program->program].spirv) ? AlphaMode::mask : AlphaMode::opaque;
 }
 

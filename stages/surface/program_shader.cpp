@@ -53,7 +53,8 @@ ProgramShader::BoundDraw ProgramShader::bind(const Draw& draw) const {
   bound.program = programs_->find(use.program);
   bound.number = use.program;
   bound.mesh = &trace_.meshes[draw.mesh];
-  bound.mode = program_alpha_mode(trace_, draw);
+  bound.mode = program_alpha_mode(trace_, draw, triangles_.order);
+  bound.has_alpha = bound.mode == AlphaMode::blend || triangles_.order == DrawOrder::of_api;
   const glm::dmat4 to_clip = frame_.projection * frame_.view * draw.transform;
   bound.to_w = {to_clip[0][3], to_clip[1][3], to_clip[2][3], to_clip[3][3]};
 
@@ -263,8 +264,8 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
         return draw.outputs[c] == kNoRow ? otherwise : limited(executor.row(draw.outputs[c]).number(lane));
       };
       const bool is_there = kept >> lane & 1;
-      const float alpha = draw.mode == AlphaMode::blend ? channel(3, 1.0f) : 1.0f;
-      colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : 0.0f};
+      const float alpha = draw.has_alpha ? channel(3, 1.0f) : 1.0f;
+      colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : kDiscarded};
     }
   });
   return texels;
@@ -288,7 +289,7 @@ std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::ve
   const std::uint64_t texels = shade_all(draw, places, colors);
   if (draw.mode != AlphaMode::mask) return texels;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (!places[i].is_there || colors[i].a > 0) continue;
+    if (!places[i].is_there || colors[i].a != kDiscarded) continue;
     std::array<ProgramPlace, 4> around;
     std::array<glm::vec4, 4> found;
     for (std::size_t k = 0; k < around.size(); ++k) {
@@ -297,7 +298,7 @@ std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::ve
       around[k].v = std::clamp(places[i].v + (k < 2 ? -0.25f : 0.25f), 0.0f, 1.0f);
     }
     shade_all(draw, around, found.data());
-    const auto kept = std::ranges::find_if(found, [](const glm::vec4& color) { return color.a > 0; });
+    const auto kept = std::ranges::find_if(found, [](const glm::vec4& color) { return color.a != kDiscarded; });
     if (kept != found.end()) colors[i] = *kept;
   }
   return texels;

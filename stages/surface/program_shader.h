@@ -34,13 +34,16 @@ struct ProgramPlace {
 
 class ProgramShader {
  public:
+  static constexpr float kDiscarded = -1;
+
   // All must outlive it. `programs`: of the trace; may be null if no draw has one.
   ProgramShader(const SetupTriangles& triangles, const Trace& trace, const Frame& frame, const ProgramSet* programs);
 
   AlphaMode alpha_mode(std::uint32_t draw) const { return draws_[draw].mode; }
 
-  // Sets the colour of each place; alpha is 1 unless the draw is blended, and 0 where the shader discards. A place that
-  // is_there then has the colour of one that is not discarded, a quarter of a pixel away, if there is one. The places
+  // Sets the colour of each place. Alpha is that of the shader in the API's order and where the draw is blended, and
+  // else 1; it is kDiscarded where the shader discards. A place that is_there then has the colour of one that is not
+  // discarded, a quarter of a pixel away, if there is one. The places
   // lie in triangles of one draw. Returns how many texels their invocations read, without helpers.
   std::uint64_t shade(std::span<const ProgramPlace> places, glm::vec4* colors) const;
 
@@ -68,6 +71,7 @@ class ProgramShader {
     std::uint32_t number = 0;  // of the program
     const Mesh* mesh = nullptr;
     AlphaMode mode = AlphaMode::opaque;
+    bool has_alpha = false;
     std::size_t stride = 0;  // varyings of a vertex
     std::vector<Input> inputs;
     std::array<std::uint32_t, 4> outputs{};

@@ -283,6 +283,9 @@ void round_to(AccumulatorFormat format, glm::vec3& color) {
   for (int c = 0; c < 3; ++c) color[c] = rounded_to(format, color[c]);
 }
 
+// 0 where a program has discarded.
+glm::vec4 with_limited_alpha(const glm::vec4& color) { return {glm::vec3(color), greater(color.a, 0.0f)}; }
+
 }  // namespace
 
 std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const Lighting& lighting) {
@@ -435,7 +438,11 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
 
 float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
-  if (!is_opaque(triangle) && is_program(triangle)) return run_program(program_place(triangle, place, false), texels).a;
+  if (!is_opaque(triangle) && is_program(triangle)) {
+    const float found = run_program(program_place(triangle, place, false), texels).a;
+    if (found == ProgramShader::kDiscarded) return 0.0f;
+    return alpha_mode(triangle) == AlphaMode::mask ? 1.0f : found;
+  }
   return alpha_there(
       triangle, place, footprint, [&](const Texture& given, const glm::vec2& uv, const TextureSlopes& slopes) {
         const Texture texture = filtered_by(given, rules_.texture_taps);
@@ -726,7 +733,7 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
 
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                 TexelRequests* texels) const {
-  if (is_program(triangle)) return run_program(program_place(triangle, place, true), texels);
+  if (is_program(triangle)) return with_limited_alpha(run_program(program_place(triangle, place, true), texels));
   const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
   find_inputs({&invocation, 1}, texels, &inputs);
@@ -797,6 +804,30 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
                   std::vector<glm::vec4> found(places.size());
                   run_programs(places, found.data(), texels);
                   for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = glm::vec3(found[k]);
+                });
+  return colors;
+}
+
+std::vector<glm::vec4> SurfaceShader::colors_and_alphas(const std::vector<Invocation>& invocations,
+                                                        TexelRequests* texels) const {
+  std::vector<glm::vec4> colors(invocations.size());
+  std::vector<std::size_t> of_programs;  // numbers of invocations
+  for (std::size_t i = 0; i < invocations.size(); ++i) {
+    const auto& [triangle, place, footprint] = invocations[i];
+    if (is_flat(triangle)) {
+      colors[i] = glm::vec4(flat_[triangle], 1.0f);
+    } else if (is_program(triangle)) {
+      of_programs.push_back(i);
+    } else {
+      colors[i] = shaded(triangle, place, footprint, texels);
+      end_request(texels);
+    }
+  }
+  for_each_draw(invocations, of_programs,
+                [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>& numbers) {
+                  std::vector<glm::vec4> found(places.size());
+                  run_programs(places, found.data(), texels);
+                  for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = with_limited_alpha(found[k]);
                 });
   return colors;
 }

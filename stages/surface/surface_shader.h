@@ -103,6 +103,8 @@ class SurfaceShader {
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const;
 
   // The same with alpha, which is 1 for flat triangles.
+  std::vector<glm::vec4> colors_and_alphas(const std::vector<Invocation>& invocations,
+                                           TexelRequests* texels = nullptr) const;
   glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
     return shaded(triangle, place, footprint, nullptr);
@@ -297,6 +299,10 @@ class TileShader {
   // Of triangles that are not flat.
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
     return shader_->colors(invocations, texels);
+  }
+  std::vector<glm::vec4> colors_and_alphas(const std::vector<Invocation>& invocations,
+                                           TexelRequests* texels = nullptr) const {
+    return shader_->colors_and_alphas(invocations, texels);
   }
   glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
                             const Footprint& footprint = {}) const {

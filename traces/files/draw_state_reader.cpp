@@ -147,7 +147,11 @@ Form<DrawState> make_form() {
                 "How colours are blended with what is stored. Without it, the material decides.")
       .optional("color_mask", &DrawState::color_mask, mask,
                 "The channels that are written: letters of \"rgba\", which is the default.")
-      .optional("stencil", &DrawState::stencil, stencil_form(), "The stencil test. Without it, there is none.");
+      .optional("stencil", &DrawState::stencil, stencil_form(), "The stencil test. Without it, there is none.")
+      .optional("stencil_back", &DrawState::stencil_back, stencil_form(),
+                "That of back faces, where it is not that of front faces.")
+      .optional("clears_stencil", &DrawState::stencil_cleared_to, form::integer(0, 255),
+                "The stencil buffer was cleared to this right before the draw.");
 }
 
 }  // namespace

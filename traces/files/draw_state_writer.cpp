@@ -42,9 +42,9 @@ void write_color_mask(TraceText& text, std::uint32_t mask) {
   text.put("\"" + letters + "\"");
 }
 
-void write_stencil(TraceText& text, const Stencil& stencil) {
+void write_stencil(TraceText& text, const char* key, const Stencil& stencil) {
   const Stencil defaults;
-  text.put_key("stencil");
+  text.put_key(key);
   text.open_object();
   text.put_choice("function", stencil.function, defaults.function, kCompareNames);
   text.put_member("reference", stencil.reference, defaults.reference);
@@ -80,7 +80,12 @@ void write_draw_state(TraceText& text, const DrawState& state) {
   text.put_choice("front_face", state.front_is_clockwise, defaults.front_is_clockwise, kFrontFaceNames);
   if (state.blend) write_blend(text, *state.blend);
   if (state.color_mask != defaults.color_mask) write_color_mask(text, state.color_mask);
-  if (state.stencil) write_stencil(text, *state.stencil);
+  if (state.stencil) write_stencil(text, "stencil", *state.stencil);
+  if (state.stencil_back) write_stencil(text, "stencil_back", *state.stencil_back);
+  if (state.stencil_cleared_to) {
+    text.put_key("clears_stencil");
+    text.put_number(*state.stencil_cleared_to);
+  }
   text.close_object();
 }
 

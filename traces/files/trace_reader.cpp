@@ -357,6 +357,8 @@ Form<Frame> frame_form(const Reader& reader) {
   frame.required("width", &Frame::width, side, "Width of the picture, in pixels.")
       .required("height", &Frame::height, side, "Height of the picture, in pixels.")
       .optional("background", &Frame::background, form::color(), "Linear RGB where nothing is drawn.")
+      .optional("background_alpha", &Frame::background_alpha, form::fraction(),
+                "What blend functions read of the destination's alpha where nothing is drawn.")
       .optional("camera", &Frame::camera, camera_form(),
                 "A pinhole camera with square pixels, right-handed, looking from `eye` to `target`.")
       .optional("view", &Frame::view, form::matrix(), "World to eye space; in place of `camera`, with `projection`.")

@@ -229,6 +229,10 @@ class TraceWriter : TraceText {
   void write_frame(const Frame& frame, const Trace& trace) {
     put("{\"width\": " + std::to_string(frame.width) + ", \"height\": " + std::to_string(frame.height));
     put_array(", \"background\": ", frame.background);
+    if (frame.background_alpha != Frame{}.background_alpha) {
+      put(", \"background_alpha\": ");
+      put_number(frame.background_alpha);
+    }
     if (frame.camera) {
       write_camera(*frame.camera);
     } else {

@@ -1,0 +1,65 @@
+#include "stages/samples/ordered_blend.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "stages/data/sample_tile.h"
+#include "stages/samples/ordered_blend_cost.h"
+
+namespace beampipe {
+namespace {
+
+void write(const RopRules& rules, const RopRule& rule, AccumulatorFormat format, const glm::vec4& source,
+           glm::vec4& stored) {
+  glm::vec4 result = source;
+  for (int c = 0; rule.blend && c < 4; ++c) result[c] = blended_channel(*rule.blend, c, &source[0], &stored[0]);
+  if (rules.limits_color) result = glm::clamp(result, 0.0f, 1.0f);
+  for (int c = 0; c < 4; ++c)
+    if (rule.color_mask >> c & 1) stored[c] = rounded_to(format, result[c]);
+}
+
+}  // namespace
+
+void ordered_blend(const SampledTriangles& in, const RopRules& rules, const ColoredFragments& fragments,
+                   StageCounters& counters, OrderedTile& surface, std::vector<OrderedAccess>& accesses) {
+  const auto& [triangles, tile, sampling] = in;
+  const CellGrid& grid = sampling.grid;
+  const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  const int channels = surface.color_bytes == kSampleColorBytes ? 3 : 4;
+  const RopRule* last = nullptr;
+  OperationCounts cost;  // of a sample
+  accesses.clear();
+  for (std::size_t i = 0; i < fragments.list.size(); ++i) {
+    const SampleFragment& fragment = fragments.list[i];
+    const RopRule& rule = rules.of(triangles, fragment.triangle);
+    if (&rule != last) last = &rule, cost = ordered_blend_cost(rule, channels);
+    const std::size_t pixel = tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
+    const std::uint32_t cell = static_cast<std::uint32_t>(pixel) * static_cast<std::uint32_t>(grid.cells_per_pixel()) +
+                               static_cast<std::uint32_t>(grid.in_pixel(fragment.x, fragment.y));
+    PixelObserver* const observer = observer_at(surface.observers, pixel);
+    const std::size_t first = surface.first_observed + cell * samples - pixel * surface.samples_per_pixel;
+    for (std::uint32_t rest = fragment.mask; rest != 0; rest &= rest - 1) {
+      const auto s = static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t at = cell * samples + s;
+      if (observer) {
+        const BlendParts parts =
+            rule.blend ? blend_parts(*rule.blend, fragments.colors[i], surface.color[at]) : BlendParts{};
+        observer->blends(fragment.triangle, first + s, parts.added, parts.kept, glm::vec3(fragments.colors[i]));
+      }
+      write(rules, rule, surface.format, fragments.colors[i], surface.color[at]);
+      surface.is_drawn[at] = true;
+    }
+    const auto written = static_cast<std::uint64_t>(std::popcount(fragment.mask));
+    const std::uint64_t read = rule.blend ? written : 0;
+    counters.items_in += written;
+    counters.items_out += written;
+    counters.ops += cost * written;
+    counters.bytes_read += kSampleFragmentBytes + read * surface.color_bytes;
+    counters.bytes_written += written * surface.color_bytes;
+    counters.lanes_used += written;
+    counters.lanes_issued += samples;
+    accesses.push_back({cell, fragment.triangle, read > 0 ? fragment.mask : 0, fragment.mask});
+  }
+}
+
+}  // namespace beampipe

@@ -1,0 +1,350 @@
+// Random streams of draws with all of the state that the API knows, against a supersampler that follows OpenGL 4.6
+// (sections 14.9, 17.3 and 17.4) draw by draw and sample by sample, and shares no code with the stages.
+
+#include <array>
+#include <functional>
+
+#include "stages/geometry/draw_plan.h"
+#include "tests/pipeline/test_pictures.h"
+#include "tests/pipeline/test_traces.h"
+#include "tests/simd/random.h"
+#include "tests/thorough.h"
+
+namespace beampipe::api_order_test {
+
+constexpr std::uint32_t kSize = 16;  // pixels
+
+struct Corner {
+  int x, y;  // 1/256 px
+};
+
+struct Shape {
+  std::array<Corner, 3> corners;
+  double depth;  // window depth, the same everywhere: a multiple of 1/8
+  glm::vec4 color;
+  std::size_t draw;
+};
+
+// ---- The supersampler ----
+
+bool holds(Compare function, double arriving, double stored) {
+  const std::array<bool, 8> answers = {false, arriving<stored, arriving == stored, arriving <= stored, arriving> stored,
+                                       arriving != stored, arriving >= stored, true};
+  return answers[static_cast<std::size_t>(function)];
+}
+
+struct Sample {
+  double depth = 1;
+  int stencil = 0;
+  glm::dvec4 color{0.0};
+
+  static void update(const Stencil& of_face, StencilOperation operation, int& value) {
+    const auto old = value, reference = static_cast<int>(of_face.reference);
+    const std::array<int, 8> results = {
+        old, 0, reference, std::min(old + 1, 255), std::max(old - 1, 0), 255 - old, (old + 1) % 256, (old + 255) % 256};
+    const auto mask = static_cast<int>(of_face.write_mask);
+    value = (results[static_cast<std::size_t>(operation)] & mask) | (old & ~mask & 255);
+  }
+
+  static double factor(BlendFactor factor, int c, const glm::dvec4& source, const glm::dvec4& stored,
+                       const glm::dvec4& constant) {
+    const std::array<double, 15> factors = {0,
+                                            1,
+                                            source[c],
+                                            1 - source[c],
+                                            source[3],
+                                            1 - source[3],
+                                            stored[c],
+                                            1 - stored[c],
+                                            stored[3],
+                                            1 - stored[3],
+                                            c == 3 ? 1 : std::min(source[3], 1 - stored[3]),
+                                            constant[c],
+                                            1 - constant[c],
+                                            constant[3],
+                                            1 - constant[3]};
+    return factors[static_cast<std::size_t>(factor)];
+  }
+
+  void take(const DrawState& state, bool is_front, double at, const glm::dvec4& source) {
+    const std::optional<Stencil>& tested = is_front || !state.stencil_back ? state.stencil : state.stencil_back;
+    const bool has_stencil = state.stencil || state.stencil_back;
+    const Stencil of_face = tested.value_or(Stencil{});
+    if (has_stencil) {
+      const auto mask = static_cast<int>(of_face.mask);
+      if (!holds(of_face.function, static_cast<int>(of_face.reference) & mask, stencil & mask))
+        return update(of_face, of_face.fail, stencil);
+    }
+    if (state.depth.test && !holds(state.depth.function, at, depth)) {
+      if (has_stencil) update(of_face, of_face.depth_fail, stencil);
+      return;
+    }
+    if (has_stencil) update(of_face, of_face.pass, stencil);
+    if (state.depth.test && state.depth.write) depth = at;
+    glm::dvec4 result = source;
+    for (int c = 0; state.blend && c < 4; ++c) {
+      const BlendEquation& equation = c == 3 && state.blend->alpha ? *state.blend->alpha : state.blend->color;
+      const double added = source[c] * factor(equation.source, c, source, color, state.blend->constant);
+      const double kept = color[c] * factor(equation.destination, c, source, color, state.blend->constant);
+      const std::array<double, 5> results = {added + kept, added - kept, kept - added, std::min(source[c], color[c]),
+                                             std::max(source[c], color[c])};
+      result[c] = results[static_cast<std::size_t>(equation.operation)];
+    }
+    for (int c = 0; c < 4; ++c)
+      if (state.color_mask >> c & 1) color[c] = result[c];
+  }
+};
+
+// Twice the area that (x, y) spans with an edge; positive inside if the triangle turns that way.
+long long side(const Corner& a, const Corner& b, int x, int y) {
+  return static_cast<long long>(b.x - a.x) * (y - a.y) - static_cast<long long>(b.y - a.y) * (x - a.x);
+}
+
+// Is the place in the triangle? On an edge: if that is a left or an upper one.
+bool covers(const Shape& shape, int x, int y) {
+  std::array<Corner, 3> c = shape.corners;
+  if (side(c[0], c[1], c[2].x, c[2].y) < 0) std::swap(c[1], c[2]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Corner &a = c[k], &b = c[(k + 1) % 3];
+    const long long inside = side(a, b, x, y);
+    const bool is_left_or_top = b.y < a.y || (b.y == a.y && b.x > a.x);
+    if (inside < 0 || (inside == 0 && !is_left_or_top)) return false;
+  }
+  return true;
+}
+
+// ---- Random streams ----
+
+template <class Enum>
+Enum any_of(Random& random, int count) {
+  return static_cast<Enum>(random.int32(0, count - 1));
+}
+
+BlendEquation random_equation(Random& random) {
+  return {any_of<BlendFactor>(random, 15), any_of<BlendFactor>(random, 15), any_of<BlendOperation>(random, 5)};
+}
+
+Stencil random_stencil(Random& random) {
+  Stencil stencil;
+  stencil.function = any_of<Compare>(random, 8);
+  stencil.reference = static_cast<std::uint32_t>(random.int32(0, 3));
+  stencil.mask = random.one_in(3) ? 255 : 3;
+  stencil.write_mask = random.one_in(3) ? 1 : 255;
+  stencil.fail = any_of<StencilOperation>(random, 8);
+  stencil.depth_fail = any_of<StencilOperation>(random, 8);
+  stencil.pass = any_of<StencilOperation>(random, 8);
+  return stencil;
+}
+
+DrawState random_state(Random& random) {
+  DrawState state;
+  state.depth.test = !random.one_in(4);
+  state.depth.write = !random.one_in(3);
+  state.depth.function = random.one_in(2) ? Compare::less_equal : any_of<Compare>(random, 8);
+  state.depth.cleared_before = random.one_in(6);
+  state.front_is_clockwise = random.one_in(2);
+  if (!random.one_in(3)) {
+    state.blend = Blend{random_equation(random), {}, {}};
+    if (random.one_in(2)) state.blend->alpha = random_equation(random);
+    for (int c = 0; c < 4; ++c) state.blend->constant[c] = static_cast<float>(random.int32(0, 4)) / 4;
+  }
+  if (random.one_in(3)) state.color_mask = static_cast<std::uint32_t>(random.int32(0, 15));
+  if (random.one_in(2)) state.stencil = random_stencil(random);
+  if (state.stencil && random.one_in(2)) state.stencil_back = random_stencil(random);
+  if (random.one_in(6)) state.stencil_cleared_to = static_cast<std::uint32_t>(random.int32(0, 3));
+  return state;
+}
+
+struct Stream {
+  Trace trace;
+  std::vector<Shape> shapes;
+
+  Frame& frame() { return trace.frames[0]; }
+
+  // `makes_corners`: of the triangles of a draw.
+  Stream(Random& random, const std::function<std::vector<std::array<Corner, 3>>()>& makes_corners) {
+    trace = pixel_trace(kSize, kSize, {});
+    trace.meshes.clear();
+    frame().draws.clear();
+    frame().background = {0.25f, 0.5f, 0.125f};
+    frame().background_alpha = 0.5f;
+    const int draws = random.int32(2, 9);
+    for (int d = 0; d < draws; ++d) {
+      Draw draw;
+      draw.mesh = static_cast<std::uint32_t>(d);
+      draw.state = random_state(random);
+      draw.material = static_cast<std::uint32_t>(d);
+      Material material;
+      material.name = "m" + std::to_string(d);
+      material.unlit = material.double_sided = true;
+      material.alpha_mode = draw.state.blend ? AlphaMode::blend : AlphaMode::opaque;
+      for (int c = 0; c < 4; ++c) material.base_color[c] = static_cast<float>(random.int32(0, 4)) / 4;
+      Mesh mesh;
+      mesh.name = material.name;
+      for (const std::array<Corner, 3>& corners : makes_corners()) {
+        const double depth = random.int32(0, 8) / 8.0;
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const Corner& corner : corners) mesh.positions.emplace_back(corner.x / 256.0, corner.y / 256.0, depth);
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+        glm::vec4 color = material.base_color;
+        if (material.alpha_mode == AlphaMode::opaque) color.a = 1;
+        shapes.push_back({corners, depth, color, static_cast<std::size_t>(d)});
+      }
+      mesh.colors.assign(mesh.triangles.size(), glm::vec3(1));
+      trace.materials.push_back(material);
+      trace.meshes.push_back(mesh);
+      frame().draws.push_back(draw);
+    }
+  }
+
+  // At a place, in 1/256 px.
+  glm::dvec3 at(int x, int y, double clear_depth) const {
+    const Frame& frame = trace.frames[0];
+    Sample sample;
+    sample.color = glm::dvec4(frame.background, frame.background_alpha);
+    sample.depth = clear_depth;
+    std::size_t next = 0;
+    for (std::size_t d = 0; d < frame.draws.size(); ++d) {
+      const DrawState& state = frame.draws[d].state;
+      if (state.depth.cleared_before) sample.depth = clear_depth;
+      if (state.stencil_cleared_to) sample.stencil = static_cast<int>(*state.stencil_cleared_to);
+      for (; next < shapes.size() && shapes[next].draw == d; ++next) {
+        const Shape& shape = shapes[next];
+        if (!covers(shape, x, y)) continue;
+        const auto& c = shape.corners;
+        // y points down, so what turns clockwise in the picture has a positive area here.
+        const bool is_clockwise = side(c[0], c[1], c[2].x, c[2].y) > 0;
+        sample.take(state, is_clockwise == state.front_is_clockwise, shape.depth, shape.color);
+      }
+    }
+    return sample.color;
+  }
+
+  // Where triangles that write depth compare with greater, depth is cleared to 0.
+  double clear_depth() const {
+    long less = 0, greater = 0;
+    for (const Shape& shape : shapes) {
+      const DepthState& depth = trace.frames[0].draws[shape.draw].state.depth;
+      if (!depth.test || !depth.write) continue;
+      less += depth.function == Compare::less || depth.function == Compare::less_equal;
+      greater += depth.function == Compare::greater || depth.function == Compare::greater_equal;
+    }
+    return greater > less ? 0 : 1;
+  }
+};
+
+void expect_picture(const Stream& stream, const std::string& spec, const std::vector<std::array<int, 2>>& places,
+                    double tolerance) {
+  FrameInput run;
+  run.memory.modelled = false;
+  const Image image = parse_technique(spec).render(stream.trace, 0, run).image;
+  const double clear_depth = stream.clear_depth();
+  for (std::uint32_t y = 0; y < kSize; ++y) {
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      glm::dvec3 mean(0.0);
+      for (const auto& [u, v] : places)
+        mean += stream.at(static_cast<int>(256 * x) + u, static_cast<int>(256 * y) + v, clear_depth) /
+                static_cast<double>(places.size());
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_NEAR(image.rgba[4 * (y * kSize + x) + c], mean[static_cast<int>(c)],
+                    tolerance * std::max(1.0, std::abs(mean[static_cast<int>(c)])))
+            << spec << " at " << x << ", " << y << ", channel " << c;
+    }
+  }
+}
+
+std::vector<std::array<Corner, 3>> random_triangles(Random& random) {
+  std::vector<std::array<Corner, 3>> triangles(static_cast<std::size_t>(random.int32(1, 4)));
+  for (auto& corners : triangles) do {
+      for (Corner& corner : corners) corner = {random.int32(0, 4096), random.int32(0, 4096)};
+    } while (side(corners[0], corners[1], corners[2].x, corners[2].y) == 0);
+  return triangles;
+}
+
+// The standard positions of Direct3D and Vulkan, in 1/256 px from the upper left corner.
+const std::vector<std::array<int, 2>> kOne = {{128, 128}}, kFour = {{96, 32}, {224, 96}, {32, 160}, {160, 224}};
+
+TEST(ApiOrder, MultisamplingFollowsRandomStreams) {
+  const int streams = 250 * thoroughness();
+  int in_order = 0;
+  for (int seed = 0; seed < streams; ++seed) {
+    Random random(static_cast<unsigned>(seed));
+    const Stream stream(random, [&] { return random_triangles(random); });
+    if (!needs_api_order(stream.trace, stream.trace.frames[0])) continue;
+    ++in_order;
+    expect_picture(stream, "msaa:1,color=rgba32f", kOne, 1e-5);
+    expect_picture(stream, "msaa:4,color=rgba32f", kFour, 1e-5);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(in_order, streams * 9 / 10);
+}
+
+TEST(ApiOrder, TheReferenceFollowsRandomStreams) {
+  const int streams = 25 * thoroughness();
+  for (int seed = 0; seed < streams; ++seed) {
+    Random random(static_cast<unsigned>(seed) + 1000000);
+    // Boxes of whole pixels, so that one place tells of a whole pixel. Their diagonals share samples out.
+    const Stream stream(random, [&] {
+      const auto place = [&] { return 256 * random.int32(0, 15); };
+      const int x = place(), y = place(), width = place() + 256, height = place() + 256;
+      const Corner a{x, y}, b{x + width, y}, c{x + width, y + height}, d{x, y + height};
+      std::vector<std::array<Corner, 3>> box = {{a, b, c}, {a, c, d}};
+      if (random.one_in(2)) box = {{a, c, b}, {a, d, c}};
+      return box;
+    });
+    if (!needs_api_order(stream.trace, stream.trace.frames[0])) continue;
+    // The triangles of a box have different depths, so pixels at a diagonal differ.
+    FrameInput run;
+    run.memory.modelled = false;
+    const Image image = parse_technique("reference").render(stream.trace, 0, run).image;
+    const double clear_depth = stream.clear_depth();
+    for (std::uint32_t y = 0; y < kSize; ++y) {
+      for (std::uint32_t x = 0; x < kSize; ++x) {
+        const auto at = [&](int u, int v) {
+          return stream.at(static_cast<int>(256 * x) + u, static_cast<int>(256 * y) + v, clear_depth);
+        };
+        const glm::dvec3 expected = at(128, 128);
+        bool is_whole = true;
+        for (const Shape& shape : stream.shapes) {
+          const auto part = [&](int u, int v) {
+            return covers(shape, static_cast<int>(256 * x) + u, static_cast<int>(256 * y) + v);
+          };
+          is_whole =
+              is_whole && part(1, 1) == part(254, 1) && part(1, 1) == part(1, 254) && part(1, 1) == part(254, 254);
+        }
+        if (!is_whole) continue;
+        for (std::size_t c = 0; c < 3; ++c)
+          ASSERT_NEAR(image.rgba[4 * (y * kSize + x) + c], expected[static_cast<int>(c)],
+                      1e-5 * std::max(1.0, std::abs(expected[static_cast<int>(c)])))
+              << x << ", " << y << ", channel " << c;
+      }
+    }
+  }
+}
+
+// Many samples converge to the reference: half the samples' error in each step of four.
+TEST(ApiOrder, MultisamplingConvergesToTheReference) {
+  for (int seed = 0; seed < 10; ++seed) {
+    Random random(static_cast<unsigned>(seed) + 2000000);
+    const Stream stream(random, [&] { return random_triangles(random); });
+    FrameInput run;
+    run.memory.modelled = false;
+    const auto render = [&](const char* spec) { return parse_technique(spec).render(stream.trace, 0, run).image; };
+    const Image reference = render("reference");
+    const auto error = [&](const char* spec) {
+      const Image image = render(spec);
+      double sum = 0, scale = 0;
+      for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const double difference = image.rgba[i] - reference.rgba[i];
+        sum += difference * difference;
+        scale += double{reference.rgba[i]} * reference.rgba[i];
+      }
+      return std::sqrt(sum / (scale + 1));
+    };
+    EXPECT_LT(error("msaa:1024,color=rgba32f"), 0.01);
+    EXPECT_LE(error("msaa:1024,color=rgba32f"), error("msaa:4,color=rgba32f"));
+  }
+}
+
+}  // namespace beampipe::api_order_test
