@@ -329,6 +329,12 @@ inline void image(const LaneOp& op, const LaneState& state) {
     request.dx[i] = row(image_op.dx[i]), request.dy[i] = row(image_op.dy[i]);
     request.offset[i] = row(image_op.offset[i]);
   }
+  LaneRow readers;  // without those whose results nobody keeps
+  if (!image_op.is_for_helpers) {
+    const LaneRow &active = *request.active, &helpers = state.rows[kHelperRow];
+    for (std::size_t i = 0; i < state.lanes; ++i) readers.bits[i] = active.bits[i] & ~helpers.bits[i];
+    request.active = &readers;
+  }
   std::array<LaneRow, 4> texels{};
   if (state.resources->images) state.resources->images->read(request, {&texels[0], &texels[1], &texels[2], &texels[3]});
   for (std::size_t j = 0; j < texels.size(); ++j) {

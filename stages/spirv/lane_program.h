@@ -39,6 +39,7 @@ struct ImageOp {
   std::array<std::uint32_t, 3> offset = dx;
   std::uint32_t lod = kNoRow, bias = kNoRow, least_lod = kNoRow, reference = kNoRow, sample = kNoRow;
   std::uint32_t component = 0;  // gather: which one
+  bool is_for_helpers = true;   // else lanes whose results nobody keeps need not read
   std::array<std::uint32_t, 4> results{kNoRow, kNoRow, kNoRow, kNoRow};
 
   template <class Visit>
