@@ -56,7 +56,7 @@ SHARED_IN_GROUP = {
     "stages/beam/merge_sort.h", "stages/beam/owner_rules.h", "stages/beam/owner_rules_cost.h",
     "stages/beam/owners_bin.h",
     "stages/beam/position_states-inl.h", "stages/beam/register_mask-inl.h", "stages/beam/casav_fragment.h",
-    "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/beam/specks_cost.h", "stages/geometry/clip.h",
+    "stages/beam/casav_merges.h", "stages/beam/region_rules.h", "stages/beam/specks.h", "stages/beam/specks_cost.h", "stages/geometry/clip.h",
     "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
     "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/reference_raster.h",

@@ -1,10 +1,12 @@
 // The beam in near-first order: each bin's triangles are sorted near to far, roughly; then one pass over them composes
 // each pixel. A pixel pays for the edges that it has: it has a word, and where surfaces share it a record in a pool.
+// Frames that need the API's order are drawn in it, and pixels keep regions (stages/beam/compose_regions.h).
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/pooled_unit.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/regions_unit.h"
 
 namespace beampipe {
 namespace {
@@ -21,13 +23,34 @@ Framebuffer beam_framebuffer(const BeamOptions& beam) {
   return {.surfaces = pooled_pixel_surfaces(beam.pool), .place = Place::on_chip, .bin_size = beam.bin};
 }
 
+// Surfaces are shaded where triangles cover pixels, whatever OwnerPlace says.
+FrameResult render_in_api_order(const FrameContext& context, const BeamOptions& beam,
+                                const BeamFragmentOptions& options) {
+  const PositionSet& positions = cell_positions(beam.positions);
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::compose, StageId::shade,
+                                StageId::resolve},
+                     .framebuffer = beam_framebuffer(beam),
+                     .keeps_tile_size = true};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeRegionsUnit compose(bin, positions, beam.pool);
+    raster.queued(bin.list,
+                  [&](const std::vector<Pair>& pairs, std::size_t) { compose(make_fragments.queued(pairs), shade); });
+    bin.finish(compose.resolve_regions());
+    shade.finish_fetches();
+  });
+}
+
 template <std::size_t Words>
 FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
-  const FrameContext context(job, {.takes_positions = true});
+  const FrameContext context(job, {.takes_positions = true}, DrawOrder::of_api);
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes);
   options.alpha = beam.alpha;
+  if (context.rop) return render_in_api_order(context, beam, options);
   const BinPlan plan{.stages = {StageId::bin_sort, StageId::conservative_raster, StageId::beam_fragment,
                                 StageId::compose, StageId::shade, StageId::resolve},
                      .framebuffer = beam_framebuffer(beam),
@@ -114,7 +137,8 @@ TechniqueKind beam_kind() {
                              .counted_positions = o.positions,
                              .renderer = bind_options(render_beam, o),
                              .is_observable = true,
-                             .has_weights = true};
+                             .has_weights = true,
+                             .keeps_api_order = true};
           })};
 }
 

@@ -50,8 +50,9 @@ class ConservativeRasterUnit {
   std::vector<Pair>& operator()() { return (*this)(bin_.list, bin_.tile); }
 
   // Calls body(pairs, first) for the pairs of the bin's pixels, in the order of the list, where a queue of kQueueItems
-  // pairs leads to the next stage. The body closes pixels. The simulator takes more pairs at once, which changes
-  // nothing but how soon a closed pixel hides pairs. The first pair belongs to list[first] or to a later triangle.
+  // pairs leads to the next stage. With Hidden::left_out, the body closes pixels. The simulator takes more pairs at
+  // once, which changes nothing but how soon a closed pixel hides pairs. The first pair belongs to list[first] or to a
+  // later triangle.
   template <class Body>
   void queued(const TriangleList& list, Body&& body) {
     constexpr std::size_t kTriangles = 64, kPairs = 256;
@@ -61,12 +62,12 @@ class ConservativeRasterUnit {
       const TriangleList batch(begin, begin + static_cast<std::ptrdiff_t>(std::min(kTriangles, list.size() - first)));
       pairs_.clear();
       conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_,
-                          {&*closed_, depths_, Closing::by_later_stage});
+                          {closed_ ? &*closed_ : nullptr, depths_, Closing::by_later_stage});
       bin_.holds("pair_queue", std::min(pairs_.size(), kQueueItems) * kQueuedPairBytes);
       for (std::size_t at = 0; at < pairs_.size(); at += kPairs) {
         const auto from = pairs_.begin() + static_cast<std::ptrdiff_t>(at);
         chunk.assign(from, from + static_cast<std::ptrdiff_t>(std::min(kPairs, pairs_.size() - at)));
-        if (at > 0) drop_hidden(chunk);
+        if (at > 0 && closed_) drop_hidden(chunk);
         body(chunk, first);
       }
     }

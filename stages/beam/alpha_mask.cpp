@@ -42,7 +42,7 @@ class AlphaMask {
         spacing_(1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()))) {}
 
   void operator()(Fragment& fragment) {
-    if (shader_.is_opaque(fragment.triangle)) return;
+    if (!shader_.is_masked(fragment.triangle)) return;
     ++work.fragments;
     const float part = shader_.is_cutout(fragment.triangle) ? cut_out(fragment) : let_through(fragment);
     fragment.alpha *= part;

@@ -75,23 +75,6 @@ std::vector<UnitCost> by_size(std::size_t count, Cost&& cost) {
   return costs;
 }
 
-// To take a pixel's positions apart by bit planes, and to put together those of so many states.
-inline OperationCounts split(std::size_t planes, std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
-    const CountedMask mask{words, &counts};
-    std::array<CountedMask, kMostStates> states;
-    split_states(
-        planes, mask, [&](std::size_t) { return mask; }, states.data());
-  });
-}
-inline OperationCounts join(std::size_t states, std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
-    std::array<CountedMask, kMostStates> masks;
-    masks.fill({words, &counts});
-    for (std::size_t p = 0; p < planes_for(states); ++p) join_states(p, states, masks[0], masks.data());
-  });
-}
-
 // What a rule does on masks of so many words.
 template <class Rule>
 OperationCounts of_masks(std::size_t words, Rule&& rule) {
@@ -193,9 +176,10 @@ template <std::size_t Words>
 void charge(const PooledWork& work, StageCounters& counters) {
   constexpr std::uint64_t kPositions = 32 * Words;
   using namespace pooled_costs;
-  static const std::vector<UnitCost> of_split = by_size(6, [](std::size_t planes) { return split(planes, Words); }),
+  static const std::vector<UnitCost> of_split =
+                                         by_size(6, [](std::size_t planes) { return split_cost(planes, Words); }),
                                      of_join = by_size(kMostStates + 1,
-                                                       [](std::size_t states) { return join(states, Words); }),
+                                                       [](std::size_t states) { return join_cost(states, Words); }),
                                      of_votes = by_size(6, speck_votes_cost);
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),

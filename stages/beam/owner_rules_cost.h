@@ -1,15 +1,35 @@
 // The costs of the rules that all composers of surfaces share: each rule is run once on numbers that count.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "stages/beam/owner_rules.h"
 #include "stages/beam/specks_cost.h"
+#include "stages/cost/counted_mask.h"
 #include "stages/cost/plane_cost.h"
+#include "stages/data/pooled_pixels.h"
 #include "stages/data/position_set.h"
 
 namespace beampipe {
+
+// To take a pixel's positions apart by bit planes, and to put together those of so many states.
+inline OperationCounts split_cost(std::size_t planes, std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    const CountedMask mask{words, &counts};
+    std::array<CountedMask, kMostStates> states;
+    split_states(
+        planes, mask, [&](std::size_t) { return mask; }, states.data());
+  });
+}
+inline OperationCounts join_cost(std::size_t states, std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    std::array<CountedMask, kMostStates> masks;
+    masks.fill({words, &counts});
+    for (std::size_t p = 0; p < planes_for(states); ++p) join_states(p, states, masks[0], masks.data());
+  });
+}
 
 // Per contest: the difference of two planes, and its sign in the whole pixel.
 inline OperationCounts plane_gap_cost() {

@@ -179,6 +179,10 @@ class SurfaceShader {
     return !is_opaque(triangle) && alpha_mode(triangle) == AlphaMode::mask;
   }
   bool is_translucent(std::uint32_t triangle) const { return !is_opaque(triangle) && !is_cutout(triangle); }
+  // Does its alpha take positions away? In the API's order, what is translucent is blended instead.
+  bool is_masked(std::uint32_t triangle) const {
+    return triangles_.order == DrawOrder::of_api ? is_cutout(triangle) : !is_opaque(triangle);
+  }
   float alpha_cutoff(std::uint32_t triangle) const {
     return is_program(triangle) ? Material{}.alpha_cutoff : material(triangle).alpha_cutoff;
   }
@@ -345,6 +349,7 @@ class TileShader {
     return shader_->light_range(triangle, place(pixel, u, v), footprint, texels);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
+  bool is_masked(std::uint32_t triangle) const { return shader_ && shader_->is_masked(triangle); }
   bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }
   float alpha_cutoff(std::uint32_t triangle) const { return shader_->alpha_cutoff(triangle); }
   // Of `positions` in the pixel.

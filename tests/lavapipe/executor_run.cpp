@@ -73,7 +73,7 @@ CaseOutputs run_executor(const ShaderCase& shader, const LaneProgram& program) {
       outputs.locations[location] = {.is_integer = !floats, .pixels = std::vector<FourBits>(kPixels)};
 
   const BoundImages bound = bound_images(program, shader.use.images, shader.images, shader.samplers);
-  ProgramImages images(program, bound, 0);
+  ProgramImages images(program, bound);
   ShaderResources resources;
   for (const BufferSlot& slot : program.buffers) {
     std::span<const std::byte>& bytes = resources.buffers.emplace_back();

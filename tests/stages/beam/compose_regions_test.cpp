@@ -1,0 +1,633 @@
+// Regions of a pixel, against expectations that are worked out by hand, and against a pixel that is computed position
+// by position.
+
+#include "stages/beam/compose_regions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/simd/random.h"
+#include "tests/stages/open_pixels.h"
+
+namespace beampipe::compose_regions_test {
+
+constexpr std::size_t kWords = 8;
+constexpr glm::vec4 kClear{0.25f, 0.5f, 0.125f, 0.5f}, kRed{1, 0, 0, 1}, kGreen{0, 1, 0, 1}, kBlue{0, 0, 1, 1};
+constexpr double kAreaStep = 1.0 / kWholeArea, kRounding = 0x1p-10;
+
+RopRule plain() { return {}; }
+RopRule without_depth() {
+  RopRule rule;
+  rule.depth = Compare::always, rule.writes_depth = false;
+  return rule;
+}
+RopRule blending(const BlendEquation& equation) {
+  RopRule rule = without_depth();
+  rule.blend = Blend{equation, {}, {}};
+  return rule;
+}
+RopRule over() {
+  return blending({BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha, BlendOperation::add});
+}
+
+// Draws in the API's order into the pixel (0, 0).
+class OnePixel {
+ public:
+  explicit OnePixel(const glm::vec4& clear_color = kClear, float clear_depth = 0, std::size_t words = kWords)
+      : words_(words), positions_(cell_positions(32 * static_cast<int>(words))) {
+    rules_.clear_color = clear_color, rules_.clear_depth = clear_depth, rules_.limits_color = false;
+  }
+
+  void begin(const RopRule& rule, const glm::vec4& color) {
+    rules_.draws.push_back({rule, rule});
+    color_ = color;
+  }
+  void clear_before_next(std::optional<std::uint32_t> stencil, bool depth = false) {
+    rules_.clears.push_back({static_cast<std::uint32_t>(rules_.draws.size()), depth, stencil});
+  }
+  void triangle(const ScreenPoint& p, const ScreenPoint& q, const ScreenPoint& r) {
+    add([&] { add_triangle(triangles_, p, q, r); });
+  }
+  void left_of(std::int32_t x, float z = -0.5f) {
+    add([&] { add_left_of(triangles_, x, z); });
+  }
+  void right_of(std::int32_t x, float z = -0.5f) {
+    add([&] { add_right_of(triangles_, x, z); });
+  }
+  void everywhere(float z = -0.5f) {
+    add([&] { add_everywhere(triangles_, z); });
+  }
+  void everywhere(const RopRule& rule, const glm::vec4& color, float z = -0.5f) {
+    begin(rule, color);
+    everywhere(z);
+  }
+  void turn_last_over() { triangles_.triangles.back().front = !triangles_.triangles.back().front; }
+
+  glm::vec4 compose(std::size_t pool_bytes = 1 << 20) {
+    const Tile tile{0, 0, 1, 1};
+    const std::vector<Fragment> fragments = of_words(tile);
+    std::vector<glm::vec4> colors;
+    for (const Fragment& fragment : fragments) colors.push_back(colors_[fragment.triangle]);
+    const RegionsBin bin{triangles_, rules_, positions_};
+    RegionPixels pixels(1, ChunkPool(pool_bytes), words_, rules_.clear_depth, rules_.clear_color);
+    std::vector<float> merges(1), chunks(1), bytes(1);
+    RegionsResult result;
+    compose_regions(bin, {fragments, colors}, counters, pixels, {merges, chunks, bytes}, result);
+    StageCounters finishing;
+    const glm::vec4 color =
+        finish_regions(bin, glm::vec3(rules_.clear_color), finishing, pixels, {merges, chunks, bytes}, result).at(0);
+    regions = pixels.pixels[0].regions;
+    shaded = result.shaded.size();
+    spills = result.spills.all();
+    merged = static_cast<int>(merges[0]);
+    return color;
+  }
+
+  std::vector<Region> regions;
+  StageCounters counters;
+  std::size_t shaded = 0, spills = 0;
+  int merged = 0;
+
+ private:
+  template <class Add>
+  void add(Add&& one) {
+    one();
+    triangles_.draws.resize(triangles_.triangles.size(), static_cast<std::uint32_t>(rules_.draws.size() - 1));
+    colors_.resize(triangles_.triangles.size(), color_);
+  }
+  std::vector<Fragment> of_words(const Tile& tile) const {
+    if (words_ == 1) return fragments_in_order<1>(triangles_, all_of(triangles_), tile);
+    return fragments_in_order<kWords>(triangles_, all_of(triangles_), tile);
+  }
+
+  std::size_t words_;
+  const PositionSet& positions_;
+  SetupTriangles triangles_;
+  RopRules rules_{Trace{}, Frame{}, glm::vec3(0.0f)};
+  std::vector<glm::vec4> colors_;
+  glm::vec4 color_{0.0f};
+};
+
+void expect_color(const glm::vec4& found, const glm::dvec3& expected, double tolerance = kRounding) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << "channel " << c;
+}
+
+// The regions divide the positions and the area among them.
+void expect_partition(const std::vector<Region>& regions, std::size_t words = kWords) {
+  WideMask all;
+  std::uint32_t area = 0;
+  int positions = 0;
+  for (const Region& region : regions) {
+    EXPECT_FALSE(region.positions.none());
+    all = all | region.positions;
+    area += region.area;
+    positions += region.positions.count();
+  }
+  EXPECT_EQ(all, first_words(words));
+  EXPECT_EQ(positions, static_cast<int>(32 * words));
+  EXPECT_EQ(area, kWholeArea);
+  EXPECT_LE(regions.size(), kMostRegions);
+}
+
+TEST(Regions, AnUntouchedPixelHasTheClearedColour) {
+  OnePixel pixel;
+  EXPECT_EQ(pixel.compose(), glm::vec4(0.25f, 0.5f, 0.125f, 0.0f));
+  expect_partition(pixel.regions);
+}
+
+TEST(Regions, AnEdgeHasItsExactArea) {
+  for (int x = 3; x <= 253; x += 10) {
+    OnePixel pixel;
+    pixel.begin(plain(), kRed);
+    pixel.left_of(x);
+    const double area = x / 256.0;
+    const glm::vec4 color = pixel.compose();
+    expect_color(color, area * glm::dvec3(kRed) + (1 - area) * glm::dvec3(kClear), 2 * kAreaStep);
+    EXPECT_NEAR(color.a, area, 2 * kAreaStep);
+    EXPECT_EQ(pixel.regions.size(), 2u);
+    expect_partition(pixel.regions);
+  }
+}
+
+// What is behind an edge gets what the edge leaves, though it was drawn in two triangles whose border lies elsewhere.
+TEST(Regions, AreasBehindAnEdgeAddUp) {
+  OnePixel pixel;
+  pixel.begin(plain(), kRed);
+  pixel.left_of(77, -0.75f);
+  pixel.begin(plain(), kGreen);
+  pixel.left_of(180, -0.5f);
+  pixel.right_of(180, -0.5f);
+  const double red = 77 / 256.0;
+  expect_color(pixel.compose(), {red, 1 - red, 0}, 3 * kAreaStep);
+  expect_partition(pixel.regions);
+}
+
+TEST(Regions, EachDepthFunctionComparesWithWhatIsStored) {
+  struct Case {
+    Compare function;
+    bool nearer, same, farther;
+  };
+  for (const Case& c : {Case{Compare::never, false, false, false}, Case{Compare::less, true, false, false},
+                        Case{Compare::equal, false, true, false}, Case{Compare::less_equal, true, true, false},
+                        Case{Compare::greater, false, false, true}, Case{Compare::not_equal, true, false, true},
+                        Case{Compare::greater_equal, false, true, true}, Case{Compare::always, true, true, true}}) {
+    const auto is_drawn = [&](float z) {
+      OnePixel pixel;
+      pixel.everywhere(plain(), kRed, -0.5f);
+      RopRule rule;
+      rule.depth = c.function;
+      pixel.everywhere(rule, kGreen, z);
+      return pixel.compose().g == 1.0f;
+    };
+    EXPECT_EQ(is_drawn(-0.75f), c.nearer) << static_cast<int>(c.function);
+    EXPECT_EQ(is_drawn(-0.5f), c.same) << static_cast<int>(c.function);
+    EXPECT_EQ(is_drawn(-0.25f), c.farther) << static_cast<int>(c.function);
+  }
+}
+
+// A plane from depth -0.75 on the left to -0.25 on the right side of the pixel, against one at -0.5.
+TEST(Regions, PlanesThatCrossAreComparedAtPositions) {
+  OnePixel pixel;
+  pixel.everywhere(plain(), kRed, -0.5f);
+  pixel.begin(plain(), kGreen);
+  pixel.triangle({-1024, -1024, -2.75f}, {2048, -1024, 3.25f}, {-1024, 2048, -2.75f});
+  expect_color(pixel.compose(), {0.5, 0.5, 0}, 1.0 / 256);
+  EXPECT_EQ(pixel.regions.size(), 2u);
+  expect_partition(pixel.regions);
+}
+
+TEST(Regions, DepthIsWrittenWhereTheDrawSaysSo) {
+  for (const bool writes : {false, true}) {
+    OnePixel pixel;
+    RopRule first;
+    first.writes_depth = writes;
+    pixel.everywhere(first, kRed, -0.75f);
+    pixel.everywhere(plain(), kGreen, -0.5f);
+    EXPECT_EQ(pixel.compose().g, writes ? 0.0f : 1.0f);
+  }
+}
+
+// Beyond the far plane depth is limited to it, where nothing is nearer than what is cleared to it.
+TEST(Regions, DepthsAreLimitedToTheRange) {
+  OnePixel pixel;
+  pixel.everywhere(plain(), kRed, 0.25f);
+  EXPECT_EQ(pixel.compose().r, kClear.r);
+  OnePixel other;
+  RopRule rule;
+  rule.depth = Compare::equal;
+  other.everywhere(rule, kRed, 0.25f);
+  EXPECT_EQ(other.compose().r, 1.0f);
+}
+
+TEST(Regions, ClearsSetDepthAndStencil) {
+  OnePixel pixel;
+  pixel.everywhere(plain(), kRed, -0.75f);
+  pixel.clear_before_next({}, true);
+  pixel.everywhere(plain(), kGreen, -0.5f);
+  pixel.clear_before_next(7u);
+  RopRule rule = without_depth();
+  rule.has_stencil = true;
+  rule.stencil[0].function = rule.stencil[1].function = Compare::equal;
+  rule.stencil[0].reference = rule.stencil[1].reference = 7;
+  pixel.everywhere(rule, kBlue, -0.25f);
+  EXPECT_EQ(pixel.compose(), kBlue);
+}
+
+TEST(Regions, EachStencilOperationChangesWhatIsStored) {
+  struct Case {
+    StencilOperation operation;
+    std::uint32_t before, after;
+  };
+  using enum StencilOperation;
+  for (const Case& c : {Case{keep, 5, 5}, Case{zero, 5, 0}, Case{replace, 5, 9}, Case{increment, 5, 6},
+                        Case{increment, 255, 255}, Case{decrement, 5, 4}, Case{decrement, 0, 0}, Case{invert, 5, 250},
+                        Case{increment_wrap, 255, 0}, Case{decrement_wrap, 0, 255}}) {
+    for (const char* when : {"fail", "depth_fail", "pass"}) {
+      OnePixel pixel;
+      pixel.everywhere(plain(), kRed, -0.75f);
+      pixel.clear_before_next(c.before);
+      RopRule rule;
+      rule.has_stencil = true;
+      Stencil stencil;
+      stencil.reference = 9;
+      const std::string event = when;
+      (event == "fail" ? stencil.fail : event == "pass" ? stencil.pass : stencil.depth_fail) = c.operation;
+      if (event == "fail") stencil.function = Compare::never;
+      rule.stencil = {stencil, stencil};
+      rule.color_mask = 0;
+      pixel.everywhere(rule, kGreen, event == "pass" ? -0.875f : -0.5f);
+      EXPECT_EQ(pixel.compose(), kRed);
+      ASSERT_EQ(pixel.regions.size(), 1u);
+      EXPECT_EQ(pixel.regions[0].stencil, c.after) << static_cast<int>(c.operation) << " " << when;
+    }
+  }
+}
+
+TEST(Regions, StencilMasksLimitWhatIsComparedAndWritten) {
+  OnePixel pixel;
+  pixel.clear_before_next(0x35u);
+  RopRule rule = without_depth();
+  rule.has_stencil = true;
+  Stencil stencil;
+  stencil.function = Compare::equal;
+  stencil.reference = 0xf5;
+  stencil.mask = 0x0f;
+  stencil.write_mask = 0xf0;
+  stencil.pass = StencilOperation::replace;
+  rule.stencil = {stencil, stencil};
+  pixel.everywhere(rule, kRed);
+  EXPECT_EQ(pixel.compose(), kRed);
+  EXPECT_EQ(pixel.regions.at(0).stencil, 0xf5);  // the lower half stays, the upper half is the reference's
+}
+
+// A window that one draw opens and another looks through.
+TEST(Regions, StencilCutsOutWhatItMarks) {
+  OnePixel pixel;
+  RopRule mark = without_depth();
+  mark.has_stencil = true, mark.color_mask = 0;
+  mark.stencil[0].pass = mark.stencil[1].pass = StencilOperation::replace;
+  mark.stencil[0].reference = mark.stencil[1].reference = 1;
+  pixel.begin(mark, kRed);
+  pixel.left_of(100);
+  RopRule look = without_depth();
+  look.has_stencil = true;
+  look.stencil[0].function = look.stencil[1].function = Compare::equal;
+  look.stencil[0].reference = look.stencil[1].reference = 1;
+  pixel.everywhere(look, kBlue);
+  const double area = 100 / 256.0;
+  expect_color(pixel.compose(), area * glm::dvec3(kBlue) + (1 - area) * glm::dvec3(kClear), 2 * kAreaStep);
+}
+
+TEST(Regions, FacesHaveStencilsOfTheirOwn) {
+  for (const bool is_front : {false, true}) {
+    for (const bool front_is_clockwise : {false, true}) {
+      OnePixel pixel;
+      RopRule rule = without_depth();
+      rule.has_stencil = true;
+      rule.front_is_clockwise = front_is_clockwise;
+      rule.stencil[0].pass = rule.stencil[1].pass = StencilOperation::replace;
+      rule.stencil[0].reference = 10, rule.stencil[1].reference = 20;
+      pixel.everywhere(rule, kRed);
+      if (is_front) pixel.turn_last_over();
+      pixel.compose();
+      EXPECT_EQ(pixel.regions.at(0).stencil, is_front != front_is_clockwise ? 10 : 20);
+    }
+  }
+}
+
+// (0.5, 0.25, 1, 0.75) over (0.25, 0.5, 0.125, 0.5).
+TEST(Regions, EachBlendOperationIsThatOfTheApi) {
+  struct Case {
+    BlendEquation equation;
+    glm::dvec3 expected;
+  };
+  using enum BlendFactor;
+  using enum BlendOperation;
+  const glm::vec4 source{0.5f, 0.25f, 1.0f, 0.75f};
+  for (const Case& c :
+       {Case{{one, one, add}, {0.75, 0.75, 1.125}},
+        Case{{source_alpha, one_minus_source_alpha, add}, {0.4375, 0.3125, 0.78125}},
+        Case{{one, one, subtract}, {0.25, -0.25, 0.875}}, Case{{one, one, reverse_subtract}, {-0.25, 0.25, -0.875}},
+        Case{{one, one, min}, {0.25, 0.25, 0.125}}, Case{{one, one, max}, {0.5, 0.5, 1}},
+        Case{{destination_color, zero, add}, {0.125, 0.125, 0.125}},
+        Case{{zero, source_color, add}, {0.125, 0.125, 0.125}},
+        Case{{destination_alpha, one_minus_destination_alpha, add}, {0.375, 0.375, 0.5625}},
+        Case{{source_alpha_saturate, one, add}, {0.5, 0.625, 0.625}}}) {
+    OnePixel pixel;
+    pixel.everywhere(blending(c.equation), source);
+    expect_color(pixel.compose(), c.expected);
+  }
+}
+
+TEST(Regions, AlphaHasAnEquationAndAStoreOfItsOwn) {
+  OnePixel pixel;
+  RopRule rule = over();
+  rule.blend->alpha = BlendEquation{BlendFactor::one, BlendFactor::one, BlendOperation::add};
+  pixel.everywhere(rule, {1, 0, 0, 0.25f});
+  expect_color(pixel.compose(), {0.4375, 0.375, 0.09375});
+  EXPECT_EQ(pixel.regions.at(0).color.a, 0.75f);  // 0.5 of the clear and 0.25
+}
+
+TEST(Regions, ColourMasksKeepChannels) {
+  OnePixel pixel;
+  RopRule rule = plain();
+  rule.color_mask = kGreenChannel | kAlphaChannel;
+  pixel.everywhere(rule, {1, 1, 1, 0.125f});
+  expect_color(pixel.compose(), {0.25, 1, 0.125}, 0);
+  EXPECT_EQ(pixel.regions.at(0).color.a, 0.125f);
+}
+
+// A fan around a hub inside the pixel covers all of it, in as many triangles as it has. Blended once, it is one
+// surface.
+TEST(Regions, AMeshHasNoSeams) {
+  Random random(41);
+  for (int i = 0; i < 200; ++i) {
+    OnePixel pixel;
+    for (int layer = 0; layer < 3; ++layer) {
+      pixel.begin(over(), {layer == 0, layer == 1, layer == 2, 0.5f});
+      const ScreenPoint hub{random.int32(1, 255), random.int32(1, 255)};
+      const SetupTriangles fan = fan_around(hub, 2000, random.int32(1, 3), &random);
+      for (const SetupTriangle& t : fan.triangles) pixel.triangle({t.x[0], t.y[0]}, {t.x[1], t.y[1]}, {t.x[2], t.y[2]});
+    }
+    // Each layer halves what is there and adds half of its colour.
+    expect_color(pixel.compose(), {0.25 / 8 + 0.125, 0.5 / 8 + 0.25, 0.125 / 8 + 0.5});
+    EXPECT_EQ(pixel.regions.size(), 1u) << i;
+    expect_partition(pixel.regions);
+  }
+}
+
+// Two layers of one draw that lie over each other are two layers.
+TEST(Regions, OverlapsWithinADrawAreBlendedTwice) {
+  OnePixel pixel;
+  pixel.begin(over(), {1, 1, 1, 0.5f});
+  pixel.left_of(128);
+  pixel.everywhere();
+  // Left: 1 - (1 - c) / 4; right: 1 - (1 - c) / 2.
+  expect_color(pixel.compose(), {1 - 0.75 * 0.375, 1 - 0.5 * 0.375, 1 - 0.875 * 0.375}, 2 * kRounding);
+  EXPECT_EQ(pixel.regions.size(), 2u);
+}
+
+// A square of 1/512 px on each side lies between positions, and adds its area.
+TEST(Regions, SpecksAddTheirArea) {
+  OnePixel pixel(glm::vec4(0.0f));
+  pixel.begin(plain(), {16, 8, 4, 1});
+  int specks = 0;
+  for (int i = 0; i < 16; ++i, ++specks) {
+    const std::int32_t x = 16 * i + 2, y = 16 * ((5 * i) % 16) + 2;
+    pixel.triangle({x, y}, {x + 1, y}, {x, y + 1});
+  }
+  const glm::vec4 found = pixel.compose();
+  const double area = specks * 0.5 / 65536;
+  expect_color(found, {16 * area, 8 * area, 4 * area}, 16 * area * 0.01);
+  EXPECT_EQ(pixel.shaded, 16u);
+}
+
+TEST(Regions, HiddenSpecksAddNothing) {
+  OnePixel pixel;
+  pixel.everywhere(plain(), kRed, -0.75f);
+  pixel.begin(plain(), {16, 16, 16, 1});
+  pixel.triangle({2, 2, -0.5f}, {3, 2, -0.5f}, {2, 3, -0.5f});
+  EXPECT_EQ(pixel.compose(), kRed);
+  EXPECT_EQ(pixel.shaded, 1u);
+}
+
+TEST(Regions, TooManyRegionsBecomeOneOfThoseThatAreAlike) {
+  OnePixel pixel;
+  // Seventeen strips of 15/256 px; two of them, which are apart, differ by little.
+  const auto gray = [](int strip) { return strip == 12 ? 3.02f / 17 : static_cast<float>(strip) / 17; };
+  double mean = 0;
+  for (int strip = 0; strip < 17; ++strip) {
+    pixel.begin(without_depth(), glm::vec4(glm::vec3(gray(strip)), 1));
+    pixel.right_of(15 * strip);
+    mean += gray(strip) * (strip == 16 ? 16 : 15) / 256.0;
+  }
+  expect_color(pixel.compose(), glm::dvec3(mean), kRounding);
+  EXPECT_EQ(pixel.merged, 1);
+  EXPECT_EQ(pixel.regions.size(), kMostRegions);
+  const auto both = std::ranges::count_if(pixel.regions, [](const Region& r) { return r.positions.count() > 24; });
+  EXPECT_EQ(both, 1);
+  expect_partition(pixel.regions);
+}
+
+// What the pool on chip has no room for lies in memory, and is the same.
+TEST(Regions, TheSizeOfThePoolChangesNoColour) {
+  const auto compose = [](OnePixel& pixel, std::size_t bytes) {
+    for (int strip = 0; strip < 8; ++strip) {
+      pixel.begin(without_depth(), glm::vec4(glm::vec3(static_cast<float>(strip) / 8), 1));
+      pixel.right_of(31 * strip);
+    }
+    return pixel.compose(bytes);
+  };
+  OnePixel on_chip, in_memory;
+  EXPECT_EQ(compose(on_chip, 1 << 20), compose(in_memory, 18));
+  EXPECT_EQ(on_chip.spills, 0u);
+  EXPECT_GT(in_memory.spills, 0u);
+}
+
+// ---- Random streams ----
+
+RopRule random_rule(Random& random) {
+  const auto any = [&](auto last) { return static_cast<decltype(last)>(random.int32(0, static_cast<int>(last))); };
+  RopRule rule;
+  rule.depth = any(Compare::always);
+  rule.writes_depth = random.one_in(2);
+  rule.has_stencil = random.one_in(2);
+  for (Stencil& stencil : rule.stencil) {
+    stencil.function = any(Compare::always);
+    stencil.reference = static_cast<std::uint32_t>(random.int32(0, 3));
+    stencil.mask = random.one_in(2) ? 255 : 1;
+    stencil.write_mask = random.one_in(2) ? 255 : 2;
+    stencil.fail = any(StencilOperation::decrement_wrap);
+    stencil.depth_fail = any(StencilOperation::decrement_wrap);
+    stencil.pass = any(StencilOperation::decrement_wrap);
+  }
+  if (random.one_in(2)) {
+    const auto equation = [&] {
+      return BlendEquation{any(BlendFactor::one_minus_constant_alpha), any(BlendFactor::one_minus_constant_alpha),
+                           any(BlendOperation::max)};
+    };
+    rule.blend = Blend{equation(), {}, {}};
+    if (random.one_in(2)) rule.blend->alpha = equation();
+    for (int c = 0; c < 4; ++c) rule.blend->constant[c] = static_cast<float>(random.int32(0, 4)) / 4;
+  }
+  if (random.one_in(4)) rule.color_mask = static_cast<std::uint32_t>(random.int32(0, 15));
+  return rule;
+}
+
+glm::vec4 random_color(Random& random) {
+  const auto channel = [&] { return static_cast<float>(random.int32(0, 4)) / 4; };
+  return {channel(), channel(), channel(), channel()};
+}
+
+// One sample, as the API has it; written without the stages' formulas.
+struct Sample {
+  double depth = 0;
+  int stencil = 0;
+  glm::dvec4 color{kClear};
+
+  static bool holds(Compare function, double a, double b) {
+    const bool answers[] = {false, a<b, a == b, a <= b, a> b, a != b, a >= b, true};
+    return answers[static_cast<int>(function)];
+  }
+  void take(const RopRule& rule, bool is_front, double z, const glm::dvec4& source) {
+    const Stencil& face = rule.stencil[is_front ? 0 : 1];
+    const auto update = [&](StencilOperation operation) {
+      const int values[] = {stencil,
+                            0,
+                            int(face.reference),
+                            std::min(stencil + 1, 255),
+                            std::max(stencil - 1, 0),
+                            255 - stencil,
+                            (stencil + 1) % 256,
+                            (stencil + 255) % 256};
+      const int mask = int(face.write_mask), value = values[static_cast<int>(operation)];
+      if (rule.has_stencil) stencil = (value & mask) | (stencil & ~mask & 255);
+    };
+    if (rule.has_stencil && !holds(face.function, int(face.reference & face.mask), stencil & int(face.mask)))
+      return update(face.fail);
+    if (!holds(rule.depth, z, depth)) return update(face.depth_fail);
+    update(face.pass);
+    if (rule.writes_depth) depth = z;
+    const glm::dvec4 before = color;
+    for (int c = 0; c < 4; ++c) {
+      double value = source[c];
+      if (rule.blend) {
+        const BlendEquation& equation = c == 3 && rule.blend->alpha ? *rule.blend->alpha : rule.blend->color;
+        const glm::dvec4 k = rule.blend->constant;
+        const auto factor = [&](BlendFactor f) {
+          const double factors[] = {0,
+                                    1,
+                                    source[c],
+                                    1 - source[c],
+                                    source[3],
+                                    1 - source[3],
+                                    before[c],
+                                    1 - before[c],
+                                    before[3],
+                                    1 - before[3],
+                                    c == 3 ? 1 : std::min(source[3], 1 - before[3]),
+                                    k[c],
+                                    1 - k[c],
+                                    k[3],
+                                    1 - k[3]};
+          return factors[static_cast<int>(f)];
+        };
+        const double added = source[c] * factor(equation.source), kept = before[c] * factor(equation.destination);
+        const double values[] = {added + kept, added - kept, kept - added, std::min(source[c], before[c]),
+                                 std::max(source[c], before[c])};
+        value = values[static_cast<int>(equation.operation)];
+      }
+      if (rule.color_mask >> c & 1) color[c] = value;
+    }
+  }
+};
+
+TEST(Regions, DrawsOfWholePixelsAreExact) {
+  for (unsigned seed = 0; seed < 3000; ++seed) {
+    Random random(seed);
+    OnePixel pixel;
+    Sample sample;
+    double largest = 1;
+    for (int i = random.int32(1, 12); i-- > 0;) {
+      const RopRule rule = random_rule(random);
+      const glm::vec4 color = random_color(random);
+      const float z = static_cast<float>(random.int32(-8, 0)) / 8;
+      if (random.one_in(6)) pixel.clear_before_next(3u, true), sample.stencil = 3, sample.depth = 0;
+      pixel.everywhere(rule, color, z);
+      const bool turned = random.one_in(2);
+      if (turned) pixel.turn_last_over();
+      sample.take(rule, turned, z, color);
+      for (int c = 0; c < 4; ++c) largest = std::max(largest, std::abs(sample.color[c]));
+    }
+    if (largest > 100) continue;
+    expect_color(pixel.compose(), sample.color, 0.02 * largest);
+    ASSERT_EQ(pixel.regions.size(), 1u);
+    EXPECT_EQ(pixel.regions[0].stencil, sample.stencil) << seed;
+    if (testing::Test::HasFailure()) FAIL() << "seed " << seed;
+  }
+}
+
+// Edges divide the pixel, so that areas are those of the mask within a few positions; all colours stay finite.
+TEST(Regions, RandomStreamsKeepThePartition) {
+  for (const std::size_t words : {std::size_t{1}, kWords}) {
+    for (unsigned seed = 0; seed < 300; ++seed) {
+      Random random(seed);
+      OnePixel pixel(kClear, 0, words);
+      for (int i = random.int32(1, 60); i-- > 0;) {
+        pixel.begin(random_rule(random), random_color(random));
+        for (int k = random.int32(1, 3); k-- > 0;) {
+          const auto point = [&] {
+            return ScreenPoint{random.int32(-100, 356), random.int32(-100, 356), -random.real32(0, 1)};
+          };
+          pixel.triangle(point(), point(), point());
+        }
+      }
+      const glm::vec4 color = pixel.compose();
+      for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(color[c]));
+      expect_partition(pixel.regions, words);
+      if (testing::Test::HasFailure()) FAIL() << "seed " << seed;
+    }
+  }
+}
+
+TEST(Regions, ThousandsOfLayersStayBounded) {
+  Random random(5);
+  OnePixel pixel;
+  for (int i = 0; i < 5000; ++i) {
+    pixel.begin(over(), random_color(random));
+    const auto point = [&] { return ScreenPoint{random.int32(-200, 456), random.int32(-200, 456)}; };
+    pixel.triangle(point(), point(), point());
+  }
+  const glm::vec4 color = pixel.compose();
+  for (int c = 0; c < 4; ++c) EXPECT_TRUE(color[c] >= 0 && color[c] <= 1.01f);
+  expect_partition(pixel.regions);
+}
+
+// ---- What they are charged ----
+
+// A layer that covers a pixel of one region is tested and blended once, and needs no mask.
+TEST(Regions, AWholeLayerCostsAsMuchAsOneSample) {
+  const auto operations = [](int layers) {
+    OnePixel pixel;
+    for (int i = 0; i < layers; ++i) pixel.everywhere(over(), {1, 1, 1, 0.5f});
+    pixel.compose();
+    return pixel.counters.ops;
+  };
+  // Of each of four channels: from fp16 and to it, two products and a sum; one minus alpha for each, too.
+  const OperationCounts one = operations(1), two = operations(2);
+  EXPECT_EQ(two.convert - one.convert, 8u);
+  EXPECT_EQ(two.mul_add - one.mul_add, 8u);
+  EXPECT_EQ(two.add - one.add, 8u);
+  EXPECT_EQ(two.bit - one.bit, 0u);
+}
+
+TEST(Regions, RecordsHoldWhatTheLayoutSays) {
+  EXPECT_EQ(region_chunks(1, false, 8), 1u);         // one region, no planes
+  EXPECT_EQ(region_chunks(2, true, 8), 2u + 2 + 1);  // a plane of 32 bytes
+  EXPECT_EQ(region_chunks(5, false, 8), 6u + 5);     // three
+  EXPECT_EQ(region_chunks(16, false, 1), 1u + 16);   // four planes of 4 bytes in one chunk
+}
+
+}  // namespace beampipe::compose_regions_test
