@@ -36,8 +36,7 @@ frame() {  # NAME PACKAGE OPTIONS... -- COMMAND...
   fi
   echo "$name:"
   # Some programs crash now and then as RenderDoc is loaded into them.
-  local attempt
-  for attempt in 1 2 3; do
+  for _ in 1 2 3; do
     "$program" capture "${options[@]}" -o "$folder/$name.json" -- "$@" && return 0
   done
   echo "$name: not captured"
@@ -77,12 +76,9 @@ for scene in build texture shading bump jellyfish shadow refract terrain effect2
 done
 frame vkcube vulkan-tools --frame 200 -- vkcube
 frame glxgears mesa-utils --frame 60 -- glxgears
-levels=/usr/share/games/neverball
 frame neverball_menu neverball --after 12 -- neverball
-frame neverball_level neverball --after 25 -- neverball $levels/map-easy/easy.sol
+frame neverball_level neverball --after 25 -- neverball /usr/share/games/neverball/map-easy/easy.sol
 frame warzone2100_menu warzone2100 --after 30 -- warzone2100 --window --resolution=640x480 --nosound
-frame warzone2100_game warzone2100 --after 60 -- warzone2100 --window --resolution=640x480 --nosound --game=CAM_1A
-frame billard-gl billard-gl --after 8 -- billard-gl
-frame openscad openscad --after 8 -- openscad /usr/share/openscad/examples/Basics/CSG.scad
+frame warzone2100_game warzone2100 --after 60 --timeout 3000 -- warzone2100 --window --resolution=640x480 --nosound --game=CAM_1A
 if wanted f3d_dense && command -v f3d > /dev/null; then dense_model "$work/dense.ply"; fi
 frame f3d_dense f3d --after 10 -- f3d --up=+Z "$work/dense.ply"

@@ -33,6 +33,14 @@ def worst(draws):
     return f"{name}: {most['differing_pixels']}, by up to {most['largest_difference']:.0f}"
 
 
+def operations_of(stages):
+    """Of an invocation. Shaders that discard run in the alpha test, and their colours need no second run."""
+    none = {"ops": {"total": 0}, "items_in": 0, "items_out": 0}
+    shade, test = stages.get("shade", none), stages.get("alpha_test", none)
+    invocations = test["items_in"] + max(0, shade["items_in"] - test["items_out"])
+    return (shade["ops"]["total"] + test["ops"]["total"]) / max(1, invocations)
+
+
 def notes_of(checked, frame):
     """What is not drawn as the program draws it, and what the capture left out."""
     notes = [f"{note['draws']} draws {'left out' if note['left_out'] else 'in the nearest way'}: {note['reason']}"
@@ -55,14 +63,14 @@ def main(program, traces, folder):
             samples = frame["captured"].get("samples", 1)
             technique = f"msaa:{samples}"
             result = measure.results(program, "run", str(path), [technique], folder, "--no-memory-model")[technique]
-            shade = measure.stages(result, number).get("shade", {"items_in": 0})
+            operations = operations_of(measure.stages(result, number))
             triangles = sum(trace["meshes"][draw["mesh"]]["indices"]["count"] // 3 for draw in frame["draws"])
             colors = found.get("colors")
             measure.print_row(
                 path.stem if len(trace["frames"]) == 1 else f"{path.stem} {number}", samples,
                 f"{100 * colors['within_2_codes']:.3f}" if colors else "", worst(colors["draws"]) if colors else "",
                 len(frame["draws"]), triangles, f"{triangles / (frame['width'] * frame['height']):.3g}",
-                f"{shade['ops']['total'] / shade['items_in']:.0f}" if shade["items_in"] else "",
+                f"{operations:.0f}",
                 notes_of(checked, frame))
 
 
