@@ -30,6 +30,7 @@ test=(
   python3-pip python3-venv          # installs the wheel
   python3-nbconvert python3-ipykernel  # runs the notebook
   libgtest-dev libbenchmark-dev
+  libvulkan-dev mesa-vulkan-drivers  # holds shaders to Mesa's lavapipe
   clang libclang-rt-dev             # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones
   "${capture[@]}"

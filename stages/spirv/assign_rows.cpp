@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <queue>
+#include <utility>
 
 namespace beampipe {
 namespace {
@@ -28,46 +29,80 @@ void for_each_result(Draft& draft, LaneOp& op, Visit&& visit) {
     if (row != kNoRow) visit(row);
 }
 
-// Leaves out what has no effect, and results of images that nobody reads.
-void remove_dead(Draft& draft) {
+// Which rows others are made from.
+class Dependence {
+ public:
+  explicit Dependence(Draft& draft) : draft_(draft), makers_(draft.rows.size()), is_wanted_(draft.rows.size()) {
+    for (DraftBlock& block : draft.blocks) {
+      for (LaneOp& op : block.ops) {
+        if (op.code == LaneCode::store_local) writes_memory_.push_back(&op);
+        for_each_result(draft, op, [&](Row row) {
+          if (draft.rows[row].kind == Kind::value)
+            makers_[row].op = &op;
+          else
+            writes_memory_.push_back(&op);
+        });
+      }
+      for (DraftEdge& edge : block.edges)
+        for (const auto& [to, from] : edge.copies) makers_[to].copied.push_back(from);
+    }
+  }
+
+  void want(Row row) {
+    if (is_wanted_[row]) return;
+    is_wanted_[row] = true;
+    wanted_.push_back(row);
+  }
+  void want_operands(LaneOp& op) {
+    for_each_operand(draft_, op, [this](Row row) { want(row); });
+  }
+
+  // Wants all that wanted rows are made from, too. Memory is made from all that is written there.
+  void follow() {
+    while (!wanted_.empty()) {
+      const Row row = wanted_.back();
+      wanted_.pop_back();
+      LaneOp* const maker = makers_[row].op;
+      if (maker) want_operands(*maker);
+      for (const Row from : makers_[row].copied) want(from);
+      if (draft_.rows[row].kind == Kind::memory || (maker && maker->code == LaneCode::load_local))
+        for (LaneOp* const write : std::exchange(writes_memory_, {})) want_operands(*write);
+    }
+  }
+
+  bool is_wanted(Row row) const { return is_wanted_[row]; }
+
+ private:
   // What writes a value: an operation, or edges.
   struct Maker {
     LaneOp* op = nullptr;
     std::vector<Row> copied;
   };
-  std::vector<Maker> makers(draft.rows.size());
-  std::vector<Row> wanted;
-  std::vector<bool> is_wanted(draft.rows.size());
-  const auto want = [&](Row row) {
-    if (is_wanted[row]) return;
-    is_wanted[row] = true;
-    wanted.push_back(row);
-  };
+  Draft& draft_;
+  std::vector<Maker> makers_;
+  std::vector<LaneOp*> writes_memory_;
+  std::vector<Row> wanted_;
+  std::vector<bool> is_wanted_;
+};
+
+// Leaves out what has no effect, and results of images that nobody reads.
+void remove_dead(Draft& draft) {
+  Dependence uses(draft);
   for (DraftBlock& block : draft.blocks) {
     for (LaneOp& op : block.ops) {
       bool has_effect = op.code == LaneCode::store_local || op.code == LaneCode::discard;
-      for_each_result(draft, op, [&](Row row) {
-        makers[row].op = &op;
-        has_effect |= draft.rows[row].kind != Kind::value;
-      });
-      if (has_effect) for_each_operand(draft, op, want);
+      for_each_result(draft, op, [&](Row row) { has_effect |= draft.rows[row].kind != Kind::value; });
+      if (has_effect) uses.want_operands(op);
     }
-    if (block.condition != kNoRow) want(block.condition);
-    for (DraftEdge& edge : block.edges)
-      for (const auto& [to, from] : edge.copies) makers[to].copied.push_back(from);
+    if (block.condition != kNoRow) uses.want(block.condition);
   }
-  while (!wanted.empty()) {
-    const Row row = wanted.back();
-    wanted.pop_back();
-    if (makers[row].op) for_each_operand(draft, *makers[row].op, want);
-    for (const Row from : makers[row].copied) want(from);
-  }
+  uses.follow();
   for (DraftBlock& block : draft.blocks) {
     std::erase_if(block.ops, [&](LaneOp& op) {
       if (op.code == LaneCode::store_local || op.code == LaneCode::discard) return false;
       bool is_used = false;
       for_each_result(draft, op, [&](Row& row) {
-        if (is_wanted[row] || draft.rows[row].kind != Kind::value)
+        if (uses.is_wanted(row) || draft.rows[row].kind != Kind::value)
           is_used = true;
         else if (op.code == LaneCode::image)
           row = kNoRow;
@@ -75,8 +110,26 @@ void remove_dead(Draft& draft) {
       return !is_used;
     });
     for (DraftEdge& edge : block.edges)
-      std::erase_if(edge.copies, [&](const auto& copy) { return !is_wanted[copy.first]; });
+      std::erase_if(edge.copies, [&](const auto& copy) { return !uses.is_wanted(copy.first); });
   }
+}
+
+bool takes_difference(LaneCode code) {
+  return code == LaneCode::dx || code == LaneCode::dy || code == LaneCode::dx_coarse || code == LaneCode::dy_coarse;
+}
+
+// Helpers read images only if differences, or the ways that lanes take, are made from what they read. Most do not, and
+// images are what takes most of the time.
+void find_reads_of_helpers(Draft& draft) {
+  Dependence uses(draft);
+  for (DraftBlock& block : draft.blocks) {
+    for (LaneOp& op : block.ops)
+      if (takes_difference(op.code)) uses.want_operands(op);
+    if (block.condition != kNoRow) uses.want(block.condition);
+  }
+  uses.follow();
+  for (ImageOp& op : draft.image_ops)
+    op.is_for_helpers = std::ranges::any_of(op.results, [&](Row row) { return row != kNoRow && uses.is_wanted(row); });
 }
 
 // Copies of an edge happen one after the other. Where one writes what another reads later, all pass through rows of
@@ -207,6 +260,7 @@ std::uint32_t most_alive(const Lives& lives, const std::vector<Row>& values) {
 
 LaneProgram assign_rows(Draft draft) {
   remove_dead(draft);
+  find_reads_of_helpers(draft);
   const Lives lives(draft, order_copies(draft));
 
   // Fixed rows, constants, inputs, memory, registers.
@@ -274,6 +328,12 @@ LaneProgram assign_rows(Draft draft) {
       if (op.code == LaneCode::load_local || op.code == LaneCode::store_local) rename(op.c);
       program.ops.push_back(op);
     }
+    // To choose a block's lanes takes as long as some operations, and to read an image as long as many.
+    constexpr std::size_t kBlockSteps = 4, kImageSteps = 32;
+    std::size_t steps = kBlockSteps + block.ops.size() + block.edges.size();
+    for (const DraftEdge& edge : block.edges) steps += edge.copies.size();
+    for (const LaneOp& op : block.ops) steps += op.code == LaneCode::image ? kImageSteps : 0;
+    made.steps = static_cast<std::uint32_t>(steps);
     for (const DraftEdge& edge : block.edges) {
       program.edges.push_back({.target = edge.target,
                                .literal = edge.literal,

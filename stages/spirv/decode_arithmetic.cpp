@@ -163,6 +163,21 @@ bool Decoder::decode_arithmetic(const Instruction& instruction) {
     return true;
   }
   switch (instruction.op) {
+    case spv::OpFwidth:
+    case spv::OpFwidthFine:
+    case spv::OpFwidthCoarse: {  // |dx| + |dy|
+      draft_.program.takes_differences = true;
+      const Parts a = parts(operands[0]);
+      const bool is_coarse = instruction.op == spv::OpFwidthCoarse;
+      const std::uint32_t width = scalar_of(instruction.type).width;
+      const auto size = [&](Code code, Row row) { return float_op(width, Code::f_abs, float_op(width, code, row)); };
+      Parts results;
+      for (const Row row : a)
+        results.push_back(float_op(width, Code::f_add, size(is_coarse ? Code::dx_coarse : Code::dx, row),
+                                   size(is_coarse ? Code::dy_coarse : Code::dy, row)));
+      define(instruction, std::move(results));
+      return true;
+    }
     case spv::OpShiftLeftLogical:
     case spv::OpShiftRightLogical:
     case spv::OpShiftRightArithmetic: {
@@ -458,8 +473,11 @@ bool Decoder::decode_conversion(const Instruction& instruction) {
       case spv::OpSConvert:
         results.push_back(width < from_width ? narrowed(width, row) : narrowed(width, widened(from_width, row)));
         break;
-      default:  // a 16-bit float is kept as one of 32 bits
-        results.push_back(width < from_width ? emit(Code::to_half, row) : row);
+      default:  // a 16-bit float is kept as one of 32 bits; SPIR-V leaves open how it is rounded, and Mesa rounds
+                // texels so
+        results.push_back(width == from_width || width == 32 ? row
+                          : texels_.contains(row)            ? emit(Code::to_half_towards_zero, row)
+                                                             : emit(Code::to_half, row));
     }
   }
   define(instruction, std::move(results));

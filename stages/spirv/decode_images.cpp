@@ -109,6 +109,7 @@ void Decoder::finish_image(const Instruction& instruction, ImageOp op, std::uint
   for (std::uint32_t i = 0; i < results && i < op.results.size(); ++i) {
     op.results[i] = draft_.add_row(DraftRow::Kind::value);
     rows.push_back(op.results[i]);
+    texels_.insert(op.results[i]);
   }
   add({.code = Code::image, .c = static_cast<std::uint32_t>(draft_.image_ops.size())});
   draft_.image_ops.push_back(op);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "stages/spirv/draft.h"
@@ -157,6 +158,7 @@ class Decoder {
   std::vector<Value> values_;  // by id
   std::unordered_map<std::uint32_t, Row> constants_;
   std::unordered_map<Row, Row> uncast_;                       // of rows that are casts of 16-bit floats: what was cast
+  std::unordered_set<Row> texels_;                            // results of images
   std::map<std::array<std::uint32_t, 6>, std::size_t> made_;  // operations of the block, by what they do
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> buffers_;  // by variable and element
   std::unordered_map<std::uint32_t, std::uint32_t> slots_;                    // image and sampler variables

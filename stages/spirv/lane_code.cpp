@@ -99,6 +99,7 @@ constexpr LaneCodeInfo kInfos[] = {
     {LaneCode::s_to_f, 1, kConvert},
     {LaneCode::u_to_f, 1, kConvert},
     {LaneCode::to_half, 1, kConvert},
+    {LaneCode::to_half_towards_zero, 1, kConvert},
     {LaneCode::half_bits, 1, kFree},
     {LaneCode::half_value, 1, kFree},
     {LaneCode::sign_extend_8, 1, kConvert},

@@ -104,6 +104,7 @@ enum class LaneCode : std::uint8_t {
   s_to_f,
   u_to_f,
   to_half,
+  to_half_towards_zero,
   half_bits,
   half_value,
   sign_extend_8,

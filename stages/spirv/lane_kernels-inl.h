@@ -220,6 +220,16 @@ HWY_INLINE U to_half(U bits) {
   const U finite = magnitude < 113u << 23 ? small : bounded;
   return (magnitude > 255u << 23 ? 0x7fc00000u : finite) | (bits & 0x80000000u);
 }
+HWY_INLINE U to_half_towards_zero(U bits) {
+  constexpr U kMost = 0x477fe000u, kInfinity = 255u << 23;  // 65504
+  const U magnitude = bits & 0x7fffffffu, normal = magnitude & ~0x1fffu;
+  const U bounded = normal > kMost && magnitude < kInfinity ? kMost : normal;
+  const U number = magnitude < 113u << 23 ? magnitude : 0u;
+  const U small =
+      std::bit_cast<U>(static_cast<float>(static_cast<S>(std::bit_cast<float>(number) * 0x1p24f)) * 0x1p-24f);
+  const U finite = magnitude < 113u << 23 ? small : bounded;
+  return (magnitude > kInfinity ? 0x7fc00000u : finite) | (bits & 0x80000000u);
+}
 HWY_INLINE U half_bits(U bits) {  // of a number that to_half() gave
   const U magnitude = bits & 0x7fffffffu;
   const U small = std::bit_cast<U>(std::bit_cast<float>(magnitude) + 0.5f) - std::bit_cast<U>(0.5f);
@@ -318,6 +328,12 @@ inline void image(const LaneOp& op, const LaneState& state) {
   for (std::size_t i = 0; i < 3; ++i) {
     request.dx[i] = row(image_op.dx[i]), request.dy[i] = row(image_op.dy[i]);
     request.offset[i] = row(image_op.offset[i]);
+  }
+  LaneRow readers;  // without those whose results nobody keeps
+  if (!image_op.is_for_helpers) {
+    const LaneRow &active = *request.active, &helpers = state.rows[kHelperRow];
+    for (std::size_t i = 0; i < state.lanes; ++i) readers.bits[i] = active.bits[i] & ~helpers.bits[i];
+    request.active = &readers;
   }
   std::array<LaneRow, 4> texels{};
   if (state.resources->images) state.resources->images->read(request, {&texels[0], &texels[1], &texels[2], &texels[3]});
@@ -513,6 +529,8 @@ inline LaneKernel kernel_of(LaneCode code) {
       return EachLane<lane::u_to_f>::run;
     case LaneCode::to_half:
       return EachLane<lane::to_half>::run;
+    case LaneCode::to_half_towards_zero:
+      return EachLane<lane::to_half_towards_zero>::run;
     case LaneCode::half_bits:
       return EachLane<lane::half_bits>::run;
     case LaneCode::half_value:

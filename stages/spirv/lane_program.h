@@ -39,6 +39,7 @@ struct ImageOp {
   std::array<std::uint32_t, 3> offset = dx;
   std::uint32_t lod = kNoRow, bias = kNoRow, least_lod = kNoRow, reference = kNoRow, sample = kNoRow;
   std::uint32_t component = 0;  // gather: which one
+  bool is_for_helpers = true;   // else lanes whose results nobody keeps need not read
   std::array<std::uint32_t, 4> results{kNoRow, kNoRow, kNoRow, kNoRow};
 
   template <class Visit>
@@ -70,6 +71,7 @@ struct LaneBlock {
   std::uint32_t first_edge = 0, edges = 0;  // in LaneProgram::edges
   OperationCounts cost{};                   // of one lane
   std::uint32_t requests = 0;               // texture requests of one lane
+  std::uint32_t steps = 0;                  // what it counts as where runs are bounded (ShaderExecutor::kMostSteps)
 };
 
 // How an input varies over its triangle.

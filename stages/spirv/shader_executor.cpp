@@ -66,7 +66,7 @@ class ProgramRun {
 
   // Lanes that want the block run, unless all their blocks together are too many. Returns how many.
   std::uint32_t activate(std::uint32_t number) {
-    const std::uint32_t steps = program_.blocks[number].ops + 1;
+    const std::uint32_t steps = program_.blocks[number].steps;
     std::uint32_t running = 0, most = 0;
     for (std::size_t i = 0; i < state_.lanes; ++i) {
       active_.bits[i] = wanted_.bits[i] == number ? ~0u : 0u;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "stages/data/half_bits.h"
+#include "stages/surface/ellipse_filter.h"
 #include "stages/surface/mip_chain.h"
 
 namespace beampipe {
@@ -23,7 +24,14 @@ Word word_at(const std::uint8_t* bytes, std::size_t place) {
   return word;
 }
 
-float unorm8(const std::uint8_t* bytes, std::size_t place) { return static_cast<float>(bytes[place]) / 255.0f; }
+// Of all bytes, because a division takes as long as the rest of a texel.
+constexpr std::array<float, 256> kUnorm8 = [] {
+  std::array<float, 256> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i) / 255.0f;
+  return numbers;
+}();
+
+float unorm8(const std::uint8_t* bytes, std::size_t place) { return kUnorm8[bytes[place]]; }
 float half_at(const std::uint8_t* bytes, std::size_t place) { return half_value(word_at<std::uint16_t>(bytes, place)); }
 float unorm16(const std::uint8_t* bytes, std::size_t place) {
   return static_cast<float>(word_at<std::uint16_t>(bytes, place)) / 65535.0f;
@@ -94,6 +102,8 @@ Texel border_of(const ProgramSampler& sampler, TexelFormat format) {
 }
 
 Texel swizzled(const Texel& texel, const ImageView& view) {
+  constexpr std::array<char, 4> kPlain{'r', 'g', 'b', 'a'};
+  if (std::bit_cast<std::uint32_t>(view.swizzle) == std::bit_cast<std::uint32_t>(kPlain)) return texel;  // most are
   Texel result{};
   const float one = is_integer(view.image->format) ? number_of(1) : 1.0f;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -123,6 +133,7 @@ std::int64_t mirrored(std::int64_t n) { return n >= 0 ? n : -(1 + n); }
 
 // -1 and `size` are the border.
 std::int64_t wrapped(SamplerWrap wrap, std::int64_t place, std::int64_t size) {
+  if (static_cast<std::uint64_t>(place) < static_cast<std::uint64_t>(size)) return place;  // most are
   switch (wrap) {
     case SamplerWrap::repeat:
       return remainder_of(place, size);
@@ -257,11 +268,9 @@ class ViewReader {
     float reference = 0;
   };
 
-  // Of levels: the unclamped one, and the clamped one.
+  // Levels: the unclamped one, and the clamped one.
   struct Detail {
     float before = 0, level = 0;
-    std::uint32_t samples = 1;  // along the longer side of the footprint
-    std::size_t longer = 0;     // which of Place::slopes that is
   };
   Detail detail(const Place& place, const float* lod, float bias, const float* least_lod) const {
     Detail found;
@@ -270,23 +279,15 @@ class ViewReader {
       found.before = *lod;
     } else {
       const std::array<std::uint32_t, 3> size = size_at(0);
-      std::array<float, 2> lengths{};
+      std::array<float, 2> squares{};
       for (std::size_t i = 0; i < 2; ++i) {
-        float square = 0;
         for (std::size_t k = 0; k < dimensions_; ++k) {
           const float texels_per_pixel = place.slopes[i][k] * static_cast<float>(size[k]);
-          square += texels_per_pixel * texels_per_pixel;
+          squares[i] += texels_per_pixel * texels_per_pixel;
         }
-        lengths[i] = std::sqrt(square);
       }
-      const float most = std::max(lengths[0], lengths[1]), least = std::min(lengths[0], lengths[1]);
-      float ratio = 1;
-      if (sampler_.anisotropy > 1 && !is_cube() && most > 0)
-        ratio = std::min(most / least, sampler_.anisotropy);  // infinite where least is 0
-      if (!(ratio >= 1)) ratio = 1;
-      found.samples = static_cast<std::uint32_t>(std::ceil(ratio));
-      found.longer = lengths[1] > lengths[0] ? 1 : 0;
-      found.before = half_log2((most / ratio) * (most / ratio));
+      const auto [least, most] = std::minmax(squares[0], squares[1]);
+      found.before = half_log2(is_anisotropic() ? least : most);
     }
     found.before += sampler_.lod_bias + bias;
     if (std::isnan(found.before)) found.before = 0;
@@ -296,6 +297,7 @@ class ViewReader {
   }
 
   Texel sample(const Place& place, const Detail& detail) {
+    if (is_anisotropic()) return in_ellipse(place, detail);
     const Filter filter = detail.level > 0 ? sampler_.min : sampler_.mag;
     const bool is_linear = filter == Filter::linear && is_linear_allowed_;
     const float most = static_cast<float>(most_level());
@@ -304,22 +306,12 @@ class ViewReader {
     const auto first = mixes ? static_cast<std::uint32_t>(level)
                              : static_cast<std::uint32_t>(std::clamp(std::ceil(level + 0.5f) - 1.0f, 0.0f, most));
     const float share = mixes ? level - static_cast<float>(first) : 0.0f;
-    Texel sum{};
-    for (std::uint32_t i = 1; i <= detail.samples; ++i) {
-      Place there = place;
-      if (detail.samples > 1) {
-        const float step = static_cast<float>(i) / static_cast<float>(detail.samples + 1) - 0.5f;
-        for (std::size_t k = 0; k < 3; ++k) there.at[k] += step * place.slopes[detail.longer][k];
-      }
-      Texel found = in_level(there, first, is_linear);
-      if (share > 0) {
-        const Texel next = in_level(there, first + 1, is_linear);
-        for (std::size_t c = 0; c < 4; ++c) found[c] += share * (next[c] - found[c]);
-      }
-      if (detail.samples == 1) return found;
-      for (std::size_t c = 0; c < 4; ++c) sum[c] += found[c] / static_cast<float>(detail.samples);
+    Texel found = in_level(place, first, is_linear);
+    if (share > 0) {
+      const Texel next = in_level(place, first + 1, is_linear);
+      for (std::size_t c = 0; c < 4; ++c) found[c] += share * (next[c] - found[c]);
     }
-    return sum;
+    return found;
   }
 
   // Upper left first, row by row, in level 0.
@@ -354,6 +346,32 @@ class ViewReader {
   Pair nearest(const Place& place, std::size_t axis, const std::array<std::uint32_t, 3>& size) const {
     const std::int64_t found = whole(scaled(place, axis, size));
     return {is_cube() ? std::clamp<std::int64_t>(found, 0, size[axis] - 1) : found, 0.0f};
+  }
+
+  bool is_anisotropic() const {
+    return sampler_.anisotropy > 1 && is_linear_allowed_ && dimensions_ > 1 && !sampler_.unnormalized &&
+           slot_.dim != spv::DimRect;
+  }
+
+  // The mean of a footprint's texels in one level, which is not rounded up; in a volume, in one slice.
+  Texel in_ellipse(const Place& place, const Detail& detail) {
+    const auto level = static_cast<std::uint32_t>(std::clamp(detail.level, 0.0f, static_cast<float>(most_level())));
+    const std::array<std::uint32_t, 3> size = size_at(level);
+    std::array<std::array<float, 2>, 2> slopes;
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t k = 0; k < 2; ++k) slopes[i][k] = place.slopes[i][k] * static_cast<float>(size[k]);
+    const std::array<float, 2> middle{scaled(place, 0, size) - 0.5f, scaled(place, 1, size) - 0.5f};
+    const std::int64_t slice = dimensions_ > 2 ? nearest(place, 2, size).first : 0;
+    const auto on_face = [&](std::int64_t at) { return is_cube() ? std::clamp<std::int64_t>(at, 0, size[0] - 1) : at; };
+    Texel sum{};
+    float weights = 0;
+    visit_ellipse(middle, slopes, [&](std::int64_t x, std::int64_t y, float weight) {
+      const Texel found = at(place, level, size, on_face(x), on_face(y), slice);
+      for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * found[c];
+      weights += weight;
+    });
+    for (float& channel : sum) channel /= weights;
+    return sum;
   }
 
   Texel in_level(const Place& place, std::uint32_t level, bool is_linear) {

@@ -1,8 +1,12 @@
 // How programs' own shaders read images: texels, filters and mip levels.
 //
-// Source: Khronos Group, Vulkan 1.3 Specification, chapter "Image Operations". Filter weights are not rounded. With
-// anisotropy, the mean of as many trilinear samples as it says lies along the longer side of the footprint. Comparisons
-// clamp their reference to 0..1, as those of fixed-point depths do. A gather reads level 0 of the view.
+// Source: Khronos Group, Vulkan 1.3 Specification, chapter "Image Operations". Filter weights are not rounded.
+// Comparisons clamp their reference to 0..1, as those of fixed-point depths do. A gather reads level 0 of the view.
+//
+// Vulkan leaves open how anisotropic samplers filter. Here they do it as Mesa's software drivers, by ellipse_filter.h:
+// in the level, rounded down, in which the shorter of the footprint's two slopes is one to two texels. How large
+// ProgramSampler::anisotropy is does not matter: Mesa 22.3 compares the shorter slope with itself where it would limit
+// their ratio (lp_build_pmin).
 #pragma once
 
 #include <array>

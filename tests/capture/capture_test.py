@@ -141,6 +141,17 @@ class Captures(unittest.TestCase):
         self.assertEqual([number for number, state in enumerate(states) if not state.get("depth_test", True)], [4, 5])
         self.assertEqual([number for number, state in enumerate(states) if "blend" in state], [5])
 
+    def test_lines_points_stencils_and_clears(self):
+        program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "own_lines.py")
+        frame, = self.trace_of(sys.executable, "--frame", "10", "--", sys.executable, program)["frames"]
+        self.assertEqual(frame["left_out"], [])
+        states = [draw.get("state", {}) for draw in frame["draws"]]
+        self.assertEqual(len(states), 7)
+        self.assertEqual([number for number, state in enumerate(states) if "stencil_back" in state], [0, 1])
+        self.assertEqual([(number, state["clears_stencil"], state["clears_depth"]) for number, state in enumerate(states)
+                          if "clears_stencil" in state], [(3, 9, True)])
+        self.assertEqual({draw["cull"] for draw in frame["draws"]}, {"none"})
+
     def test_a_program_that_ends_is_one_line(self):
         done = capture("-o", os.path.join(self.folder, "a.json"), "--", "false")
         self.assertEqual((done.returncode, done.stdout), (1, ""))

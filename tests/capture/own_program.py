@@ -62,15 +62,16 @@ def open_window():
     return display, window
 
 
-def start_egl(display, window):
-    """A function that shows what was drawn."""
+def start_egl(display, window, wanted=()):
+    """A function that shows what was drawn. `wanted`: more attributes of EGL's configuration and their values."""
     egl = library("EGL")
     for name in ("eglGetDisplay", "eglCreateWindowSurface", "eglCreateContext"):
         getattr(egl, name).restype = ctypes.c_void_p
     device = ctypes.c_void_p(egl.eglGetDisplay(display))
     config, count = ctypes.c_void_p(), ctypes.c_int()
-    wanted = (ctypes.c_int * 9)(EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_ES3_BIT, EGL_DEPTH_SIZE, 24,
-                                EGL_RED_SIZE, 8, EGL_NONE)
+    wanted = (EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_ES3_BIT, EGL_DEPTH_SIZE, 24, EGL_RED_SIZE, 8,
+              *wanted, EGL_NONE)
+    wanted = (ctypes.c_int * len(wanted))(*wanted)
     if not (egl.eglInitialize(device, None, None) and egl.eglBindAPI(EGL_OPENGL_ES_API)
             and egl.eglChooseConfig(device, wanted, ctypes.byref(config), 1, ctypes.byref(count)) and count.value):
         sys.exit("no OpenGL ES 3")
@@ -82,9 +83,9 @@ def start_egl(display, window):
     return lambda: egl.eglSwapBuffers(device, surface)
 
 
-def make_program(gl):
+def make_program(gl, vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER):
     program = gl.glCreateProgram()
-    for kind, text in ((GL_VERTEX_SHADER, VERTEX_SHADER), (GL_FRAGMENT_SHADER, FRAGMENT_SHADER)):
+    for kind, text in ((GL_VERTEX_SHADER, vertex_shader), (GL_FRAGMENT_SHADER, fragment_shader)):
         shader = gl.glCreateShader(kind)
         gl.glShaderSource(shader, 1, ctypes.byref(ctypes.c_char_p(text)), None)
         gl.glCompileShader(shader)

@@ -16,6 +16,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
                 os.path.join(os.path.dirname(__file__), "../../tools/capture"))
 sys.dont_write_bytecode = True
+import frame
 import geometry
 import images
 import meshes
@@ -26,6 +27,7 @@ import spirv
 import srgb
 import state
 import trace_file
+import wide
 
 
 class Errors(unittest.TestCase):
@@ -46,7 +48,7 @@ class Errors(unittest.TestCase):
             program.main(words)
 
 
-class Triangles(unittest.TestCase):
+class Primitives(unittest.TestCase):
     def test_topologies(self):
         for why, topology, indices, restart, expected in [
                 ("a strip turns every second one", "TriangleStrip", [5, 6, 7, 8, 9], None, [[5, 6, 7], [6, 8, 7], [7, 8, 9]]),
@@ -56,14 +58,112 @@ class Triangles(unittest.TestCase):
                 ("restarts at both ends and in a row", "TriangleFan", [9, 9, 0, 1, 2, 9], 9, [[1, 2, 0]]),
                 ("incomplete ones are left out", "TriangleList", range(5), None, [[0, 1, 2]]),
                 ("incomplete ones are left out", "TriangleStrip", range(2), None, []),
-                ("neighbours are not corners", "TriangleList_Adj", range(6), None, [[0, 2, 4]])]:
+                ("neighbours are not corners", "TriangleList_Adj", range(6), None, [[0, 2, 4]]),
+                ("lines have two corners", "LineList", range(5), None, [[0, 1], [2, 3]]),
+                ("a restart begins a line anew", "LineStrip", [0, 1, 2, 9, 3, 9, 4, 5], 9, [[0, 1], [1, 2], [4, 5]]),
+                ("neighbours are not ends", "LineStrip_Adj", range(5), None, [[1, 2], [2, 3]]),
+                ("neighbours are not ends", "LineList_Adj", range(8), None, [[1, 2], [5, 6]]),
+                ("points have one", "PointList", [4, 2], None, [[4], [2]])]:
             with self.subTest(why):
-                self.assertEqual(geometry.triangles_of(topology, np.array(indices), restart).tolist(), expected)
+                self.assertEqual(geometry.corners_of(topology, np.array(indices), restart).tolist(), expected)
 
-    def test_lines_and_points_have_no_triangles(self):
-        self.assertIsNone(geometry.triangles_of("LineStrip", np.arange(6)))
-        self.assertIsNone(geometry.triangles_of("PointList", np.arange(6)))
+    def test_patches_are_none(self):
+        self.assertIsNone(geometry.corners_of("PatchList", np.arange(6)))
         self.assertEqual(geometry.primitives_of("LineStrip", 6), 5)
+
+
+class LinesAndPoints(unittest.TestCase):
+    """In a window of 16 x 8 pixels."""
+    WINDOW = wide.Window([0, 0, 16, 8])
+
+    def clip(self, *places, w=1.0):
+        places = np.array(places, np.float64)
+        return np.float32(np.concatenate([(places / [8, 4] - 1) * w, np.full((len(places), 1), 0.25) * w,
+                                          np.full((len(places), 1), w)], 1))
+
+    def quads(self, clip):
+        """(left, top, right, bottom) of each four vertices."""
+        places = np.round(self.WINDOW.places(clip).reshape(-1, 4, 2), 6)
+        return np.concatenate([places.min(1), places.max(1)], 1).tolist()
+
+    def line(self, start, stop, width=1.0, is_rectangular=False, has_samples=False, front_ccw=True):
+        ends = wide.Ends(self.clip(start, stop), np.zeros((2, 0), np.uint32), np.array([[0, 1]]), [])
+        return wide.lines_as_triangles(ends, self.WINDOW, width, is_rectangular, has_samples, front_ccw)
+
+    def test_a_line_has_the_pixel_that_it_starts_in_and_not_the_one_that_it_ends_in(self):
+        for why, start, stop, width, expected in [
+                ("to the right", (2.5, 3.5), (6.5, 3.5), 1, [2, 3, 6, 4]),
+                ("to the left", (6.5, 3.5), (2.5, 3.5), 1, [3, 3, 7, 4]),
+                ("down, three pixels wide", (4.5, 1.5), (4.5, 5.5), 3, [3, 1, 6, 5]),
+                ("up", (4.5, 5.5), (4.5, 1.5), 1, [4, 2, 5, 6]),
+                ("wide lines take whole pixels", (2.5, 3.5), (6.5, 3.5), 2.25, [2, 2.5, 6, 4.5]),
+                ("ends outside the diamonds stay", (2.0, 3.125), (6.0, 3.125), 1, [2, 2.625, 6, 3.625])]:
+            with self.subTest(why):
+                self.assertEqual(self.quads(self.line(start, stop, width)[0]), [expected])
+
+    def test_a_line_that_starts_and_ends_in_a_diamond_is_empty(self):
+        (left, _, right, _), = self.quads(self.line((2.4, 3.5), (2.6, 3.5))[0])
+        self.assertEqual(left, right)
+        self.assertEqual(len(self.line((2.5, 3.5), (2.5, 3.5))[2]), 0)
+
+    def test_pixels_of_several_samples_are_whole(self):
+        clip, _, triangles = self.line((0.5, 0.5), (4.5, 2.5), has_samples=True)
+        # At the centres of columns 0 to 3 the line is at 0.5, 1, 1.5 and 2; halfway the upper pixel has it.
+        self.assertEqual(self.quads(clip), [[0, 0, 1, 1], [1, 0, 2, 1], [2, 1, 3, 2], [3, 1, 4, 2]])
+        self.assertEqual(len(triangles), 8)
+        down, _, _ = self.line((2.5, 4.5), (0.5, 0.5), has_samples=True)
+        self.assertEqual(sorted(self.quads(down)), [[0, 1, 1, 2], [1, 2, 2, 3], [1, 3, 2, 4], [2, 4, 3, 5]])
+
+    def test_rectangular_lines_have_sides_at_right_angles(self):
+        clip, _, _ = self.line((2, 2), (6, 2), 2, is_rectangular=True)
+        self.assertEqual(self.quads(clip), [[2, 1, 6, 3]])
+        places = self.WINDOW.places(self.line((2, 2), (5, 6), 5, is_rectangular=True)[0])
+        self.assertEqual(sorted(np.round(places, 2).tolist()), [[0, 3.5], [3, 7.5], [4, 0.5], [7, 4.5]])
+
+    def test_all_face_the_viewer(self):
+        ways = [((2, 2), (6, 3)), ((6, 3), (2, 2)), ((2, 2), (3, 6)), ((3, 6), (2, 2))]
+        for front_ccw in (False, True):
+            for start, stop in ways:
+                for kind in ((True, False), (False, False), (False, True)):
+                    clip, _, triangles = self.line(start, stop, 2, *kind, front_ccw)
+                    a, b, c = (self.WINDOW.places(clip)[corner] for corner in triangles.T)
+                    (ax, ay), (bx, by) = (b - a).T, (c - a).T
+                    self.assertTrue(((ax * by - ay * bx < 0) == front_ccw).all())  # y is down
+
+    def test_varyings_have_perspective_and_flat_ones_those_of_the_first_end(self):
+        clip = np.concatenate([self.clip((2.5, 3.5)), self.clip((6.5, 3.5), w=3.0)])
+        varyings = np.array([[0.0, 5.0], [8.0, 7.0]], np.float32).view(np.uint32)
+        ends = wide.Ends(clip, varyings, np.array([[0, 1]]), [True, False])
+        clip, varyings, _ = wide.lines_as_triangles(ends, self.WINDOW, 1, False, True, True)
+        found = varyings.view(np.float32).reshape(-1, 4, 2)
+        # The third pixel starts halfway between the centres of the first and the fifth, less an eighth: share s, where
+        # the line has 8 s / (s + 3 (1 - s)).
+        for column, share in ((0, -0.125), (1, 0.125), (2, 0.375)):
+            self.assertAlmostEqual(float(found[column, 0, 0]), 8 * share / (share + 3 * (1 - share)), 5)
+        np.testing.assert_array_equal(found[..., 1], 5)
+
+    def test_lines_are_cut_where_they_pass_the_near_plane(self):
+        clip = np.array([[0, 0, 1, 2], [4, 0, -3, -2]], np.float32)
+        varyings = np.array([[0.0], [4.0]], np.float32).view(np.uint32)
+        ends = wide.Ends(clip, varyings, np.array([[0, 1], [1, 1]]), [True])
+        ends.cut(wide.planes_of(ends.clip, True, True))
+        np.testing.assert_allclose(ends.clip[:, 0], [[0, 0, 1, 2], [1, 0, 0, 1]])
+        self.assertEqual(ends.varyings.view(np.float32).ravel().tolist(), [0, 1])
+
+    def test_points_are_squares(self):
+        varyings = np.array([[7], [8]], np.uint32)
+        clip, varyings, triangles, coordinates = wide.points_as_triangles(
+            self.clip((4.5, 2.5), (9, 4), w=2.0), varyings, np.array([3.0, 0.5]), self.WINDOW, True)
+        self.assertEqual(self.quads(clip), [[3, 1, 6, 4], [8.5, 3.5, 9.5, 4.5]])
+        self.assertEqual(varyings.ravel().tolist(), [7] * 4 + [8] * 4)
+        for corner, place in zip(self.WINDOW.places(clip)[:4], coordinates[:4]):
+            np.testing.assert_allclose((corner - [3, 1]) / 3, place, atol=1e-6)
+        self.assertEqual(len(triangles), 4)
+
+    def test_none_at_all(self):
+        none = np.zeros(0, np.int64)
+        self.assertEqual(wide.points_as_triangles(self.clip((1, 1))[none], np.zeros((0, 3), np.uint32), np.ones(0),
+                                                  self.WINDOW, True)[1].shape, (0, 3))
 
 
 class Welding(unittest.TestCase):
@@ -143,7 +243,7 @@ class Windows(unittest.TestCase):
 class States(unittest.TestCase):
     API = {"viewport": [0, 32, 64, -32], "depth_range": [0, 1], "scissor": None, "depth_test": True, "depth_write": True,
            "depth_function": "Less", "bias": 0, "slope_bias": 0, "bias_clamp": 0, "depth_format": "D24",
-           "depth_clamp": False, "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None}
+           "depth_clamp": False, "cull": "NoCull", "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None}
 
     def of(self, **changes):
         return state.state_of({**self.API, **changes}, 64, 32)
@@ -179,13 +279,26 @@ class States(unittest.TestCase):
 
     def test_masks_and_faces(self):
         self.assertEqual(self.of(color_mask=7, front_ccw=False), {"color_mask": "rgb", "front_face": "clockwise"})
+        self.assertEqual(state.state_of(self.API, 64, 32, has_alpha=False), {"color_mask": "rgb"})
 
     def test_stencil_has_8_bits(self):
         face = {"function": "Equal", "reference": 1, "compare_mask": 0xFFFFFFFF, "write_mask": 0xFFFFFFFF,
                 "fail": "Keep", "depth_fail": "IncSat", "pass": "Replace"}
-        self.assertEqual(self.of(stencil=face)["stencil"],
-                         {"function": "equal", "reference": 1, "mask": 255, "write_mask": 255, "fail": "keep",
-                          "depth_fail": "increment", "pass": "replace"})
+        self.assertEqual(self.of(stencil=(face, face)),
+                         {"stencil": {"function": "equal", "reference": 1, "mask": 255, "write_mask": 255,
+                                      "fail": "keep", "depth_fail": "increment", "pass": "replace"}})
+
+    def test_faces_have_stencils_of_their_own_unless_they_are_culled(self):
+        front = {"function": "AlwaysTrue", "reference": 0, "compare_mask": 255, "write_mask": 255, "fail": "Keep",
+                 "depth_fail": "IncWrap", "pass": "Keep"}
+        both = (front, {**front, "depth_fail": "DecWrap"})
+        found = self.of(stencil=both)
+        self.assertEqual([found[key]["depth_fail"] for key in ("stencil", "stencil_back")],
+                         ["increment_wrap", "decrement_wrap"])
+        for cull, kept in (("Back", "increment_wrap"), ("Front", "decrement_wrap")):
+            found = self.of(stencil=both, cull=cull)
+            self.assertNotIn("stencil_back", found)
+            self.assertEqual(found["stencil"]["depth_fail"], kept)
 
 
 class Passes(unittest.TestCase):
@@ -207,19 +320,62 @@ class Passes(unittest.TestCase):
         self.assertEqual(passes.choose(found, 9).color, 5)
 
     def test_a_picture_that_is_cleared_again_starts_anew(self):
-        clear = passes.Action(2, "", False, 5, 6, 0, clears_depth=True, clears_color=True)
+        clear = passes.Action(2, "", False, 5, 6, 0, passes.Clears(color=True, depth=1.0))
         found = passes.group([self.draw(1, 5, 6, 10), clear, self.draw(3, 5, 6, 20)])
         self.assertEqual([[one.event for one in p.draws] for p in found], [[1], [3]])
 
-    def test_depth_that_is_cleared_between_draws_is_known(self):
-        clear = passes.Action(2, "", False, 5, 6, 0, clears_depth=True)
-        found = passes.group([self.draw(1, 5, 6, 10), clear, self.draw(3, 5, 6, 20), self.draw(4, 5, 6, 20)])
-        self.assertEqual((len(found), found[0].cleared_before), (1, {3}))
+    def test_what_is_cleared_between_draws_is_known(self):
+        clear = lambda event, *what: passes.Action(event, "", False, 5, 6, 0, passes.Clears(False, *what))
+        found = passes.group([clear(1, 1.0, 9), self.draw(2, 5, 6, 10), clear(3, 1.0, 7), clear(4, None, 8),
+                              self.draw(5, 5, 6, 20), self.draw(6, 5, 6, 20), clear(7, None, None, True),
+                              self.draw(8, 5, 6, 20)])
+        self.assertEqual(len(found), 1)
+        self.assertEqual({event: (cleared.depth, cleared.stencil, cleared.parts)
+                          for event, cleared in found[0].cleared_before.items()},
+                         {5: (1.0, 8, False), 8: (None, None, True)})
 
     def test_names_of_render_passes(self):
-        self.assertEqual(passes.clears_of("vkCmdBeginRenderPass(C=Clear, D=Clear)"), (True, True))
-        self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, DS=Clear)"), (True, False))
-        self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, D=Load)"), (False, False))
+        self.assertEqual(passes.clears_of("vkCmdBeginRenderPass(C=Clear, D=Clear)"), (True, True, False))
+        self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, DS=Clear)"), (False, True, True))
+        self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, D=Load, S=Clear)"), (False, False, True))
+        self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, D=Load)"), (False, False, False))
+
+
+class Frames(unittest.TestCase):
+    DRAW = {"left_out": None, "primitives": 0, "clip": np.zeros((3, 4), np.float32),
+            "varyings": np.zeros((3, 0), np.uint32), "triangles": np.array([[0, 1, 2]]), "program": {}}
+
+    def frame(self, cleared, *events, **changes):
+        before = np.zeros((32, 64, 4), np.float32)
+        before[..., 3] = 0.2
+        before[0, 0] = 1
+        pictures = {"size": (64, 32), "samples": 1, "later_draws": 0, "color_format": "R8G8B8A8_UNORM",
+                    "color": before, "color_before": before, "depth": np.ones((32, 64)), "depth_before": np.ones((32, 64)),
+                    "stencil_before": np.zeros((32, 64), np.uint8), "passes": [], "cleared_before": cleared, **changes}
+        draws = [{**self.DRAW, "event": event, "api": States.API,
+                  **({"left_out": "why", "primitives": 4} if event < 0 else {})} for event in events]
+        return frame.Frame(pictures, draws)
+
+    def test_clears_belong_to_the_next_draw_that_is_kept(self):
+        found = self.frame({-2: passes.Clears(depth=1.0), 3: passes.Clears(stencil=5)}, 1, -2, 3, 4)
+        self.assertEqual([draw.state for draw in found.draws],
+                         [{}, {"clears_depth": True, "clears_stencil": 5}, {}])
+        self.assertEqual(found.left_out, {"why": (1, 4)})
+
+    def test_what_a_trace_cannot_clear_is_counted(self):
+        found = self.frame({2: passes.Clears(parts=True), 3: passes.Clears(depth=0.5)}, 1, 2, 3)
+        self.assertEqual(sorted(found.left_out.values()), [(1, 0), (1, 0)])
+
+    def test_what_the_targets_have_before_the_first_draw(self):
+        stencil = np.full((32, 64), 3, np.uint8)
+        found = self.frame({}, 1, 2, stencil_before=stencil, depth_before=np.full((32, 64), 0.5))
+        self.assertEqual([draw.state for draw in found.draws], [{"clears_stencil": 3}, {}])
+        self.assertAlmostEqual(found.background_alpha, 0.2)
+        self.assertEqual((found.background, found.clear_depth), ([0, 0, 0], 0.5))
+
+    def test_a_target_without_alpha_does_not_write_it(self):
+        found = self.frame({}, 1, color_format="R5G6B5_UNORM")
+        self.assertEqual(found.draws[0].state, {"color_mask": "rgb"})
 
 
 class Matrices(unittest.TestCase):
@@ -324,6 +480,13 @@ class Images(unittest.TestCase):
         name, texels = images.stored(struct.pack("<I", 7 << 24 | 0xFFFFFF), 1, 1, format)
         self.assertEqual((name, texels), ("D32_SFLOAT", struct.pack("<f", 1)))
 
+    def test_stencil_is_beside_depth(self):
+        d24 = self.format("D24S8", "D24S8", 4, 2, "Depth")
+        self.assertEqual(images.decode_stencil(struct.pack("<II", 7 << 24 | 5, 9), 2, 1, d24).tolist(), [[7, 0]])
+        d32 = self.format("D32S8", "D32S8", 8, 2, "Depth")
+        self.assertEqual(images.decode_stencil(struct.pack("<fIfI", 1, 4, 1, 6), 2, 1, d32).tolist(), [[4, 6]])
+        self.assertIsNone(images.decode_stencil(bytes(4), 1, 1, self.format("D16", component_bytes=2, numbers="Depth")))
+
     def test_an_unknown_format_is_none(self):
         self.assertIsNone(images.stored(bytes(16), 4, 4, self.format("ASTC_4x4", "ASTC")))
 
@@ -345,6 +508,14 @@ class Interpolations(unittest.TestCase):
         self.assertEqual(found, [(0, "flat"), (1, "linear"), (4, "smooth")])
         self.assertEqual([spirv.interpolation_at(found, place) for place in (0, 1, 3, 4, 5)],
                          ["flat", "linear", "linear", "smooth", "smooth"])
+
+    def test_the_place_in_a_point_becomes_an_input(self):
+        module = self.module((71, 8, 30, 0), (71, 9, 11, 16), (59, 1, 8, 1), (59, 1, 9, 1))
+        changed, found = spirv.with_point_coordinates(module, 31)
+        self.assertTrue(found)
+        self.assertEqual(changed, self.module((71, 8, 30, 0), (71, 9, 30, 31), (59, 1, 8, 1), (59, 1, 9, 1)))
+        other = self.module((71, 9, 11, 15))  # gl_FragCoord
+        self.assertEqual(spirv.with_point_coordinates(other, 31), (other, False))
 
     def test_members_of_a_block(self):
         module = self.module((72, 5, 0, 30, 3), (72, 5, 1, 30, 6), (72, 5, 1, 14), (59, 1, 9, 1))

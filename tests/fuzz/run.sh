@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 seconds=${1:-20}
 targets=("${@:2}")
-((${#targets[@]} > 0)) || targets=(trace obj gltf image exr spec config results)
+((${#targets[@]} > 0)) || targets=(trace obj gltf image exr spirv spec config results)
 TMPDIR=$(mktemp --directory /dev/shm/beampipe-fuzz-XXXXXX)  # in memory
 export TMPDIR
 trap 'rm -r "$TMPDIR"' EXIT
@@ -20,9 +20,11 @@ for target in "${targets[@]}"; do
   found=build/fuzz/found/$target
   dictionary=tests/fuzz/$target.dict
   [[ $target != spec ]] || dictionary=$TMPDIR/spec.dict
+  options=()
+  [[ ! -e $dictionary ]] || options=(-dict="$dictionary")
   mkdir -p "$found"
   echo "== $target: $seconds s"
-  build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" -dict="$dictionary" \
+  build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" "${options[@]}" \
     -max_total_time="$seconds" -max_len=65536 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
     -print_final_stats=1 -verbosity=0
 done

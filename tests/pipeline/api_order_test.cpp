@@ -347,4 +347,82 @@ TEST(ApiOrder, MultisamplingConvergesToTheReference) {
   }
 }
 
+// What moves between the units and their caches for a tile of 8-bit RGBA: a stencil test reads a word of each pixel,
+// blending reads and writes a colour.
+TEST(ApiOrder, MovesWhatDrawsReadAndWrite) {
+  struct Moved {
+    std::uint64_t depth_test = 0, blend = 0;
+  };
+  const auto moved = [](const std::vector<DrawState>& states) {
+    Trace trace = pixel_trace(kSize, kSize, {});
+    trace.meshes.clear();
+    trace.frames[0].draws.clear();
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const auto number = static_cast<std::uint32_t>(i);
+      const Trace one = pixel_trace(kSize, kSize, {{{{-40, -40, 0.5}, {80, -40, 0.5}, {-40, 80, 0.5}}, glm::vec3(1)}});
+      trace.meshes.push_back(one.meshes[0]);
+      Draw draw;
+      draw.mesh = number;
+      draw.state = states[i];
+      trace.frames[0].draws.push_back(draw);
+    }
+    FrameInput run;
+    run.memory.compression = false;
+    const FrameResult result = parse_technique("msaa:1,color=rgba8").render(trace, 0, run);
+    return Moved{find_counters(result.stages, {StageId::depth_test})->sector_bytes,
+                 find_counters(result.stages, {StageId::blend})->sector_bytes};
+  };
+  constexpr std::uint64_t kTile = kSize * kSize * 4;
+  DrawState untested;
+  untested.depth.test = false;
+  untested.stencil = Stencil{.function = Compare::equal, .mask = 0};  // which passes
+  DrawState blended = untested;
+  blended.blend = Blend{{BlendFactor::one, BlendFactor::one}, {}, {}};
+  DrawState written = untested;
+  written.stencil->pass = StencilOperation::replace;
+  DrawState free = blended;
+  free.stencil.reset();
+  struct Row {
+    std::vector<DrawState> states;
+    std::uint64_t depth_test, blend;  // tiles
+  };
+  for (const Row& row : {Row{{untested}, 1, 1}, Row{{written}, 2, 1}, Row{{blended}, 1, 2},
+                         Row{{untested, blended}, 2, 3}, Row{{untested, free}, 1, 3}}) {
+    const Moved found = moved(row.states);
+    EXPECT_EQ(found.depth_test, row.depth_test * kTile);
+    EXPECT_EQ(found.blend, row.blend * kTile);
+  }
+}
+
+// A red surface, and then half of green is added and a quarter of all is kept.
+TEST(ApiOrder, HistoriesHaveTheWeightsOfBlending) {
+  Trace trace =
+      pixel_trace(kSize, kSize, {{{{-40, -40, 0.5}, {80, -40, 0.5}, {-40, 80, 0.5}}, {1, 0, 0}}}, glm::vec3(0.5f));
+  trace.meshes.push_back(trace.meshes[0]);
+  trace.meshes[1].colors = {{0, 1, 0}};
+  trace.frames[0].draws.push_back(Draw{.mesh = 1});
+  DrawState& state = trace.frames[0].draws[1].state;
+  state.depth.test = false;
+  state.stencil = Stencil{.function = Compare::equal, .mask = 0};  // which passes
+  state.blend = Blend{{BlendFactor::constant_alpha, BlendFactor::constant}, {}, {0.25f, 0.25f, 0.25f, 0.5f}};
+  const std::vector<PixelAddress> pixels = {{3, 4}};
+  FrameInput run;
+  run.pixels = &pixels;
+  std::vector<PixelHistory> histories;
+  parse_technique("msaa:4,color=rgba32f").render(trace, 0, run, {.histories = &histories});
+  ASSERT_EQ(histories.size(), 1u);
+  EXPECT_EQ(histories[0].pixel, glm::vec4(0.25f, 0.5f, 0, 1));
+  double red = 0, green = 0, background = 0;
+  for (const HistoryTerm& term : histories[0].terms) {
+    if (term.fragment == kNobody) {
+      background += term.weight;
+    } else {
+      (histories[0].fragments[term.fragment].draw == 0 ? red : green) += term.weight;
+    }
+  }
+  EXPECT_NEAR(red, 0.25, 1e-9);
+  EXPECT_NEAR(green, 0.5, 1e-9);
+  EXPECT_NEAR(background, 0, 1e-9);
+}
+
 }  // namespace beampipe::api_order_test

@@ -318,7 +318,7 @@ TEST(ProgramDraws, ShadersThatCannotRunAreGreyAndNoted) {
   scene.fill();
   for (const char* spec : {"msaa:1", "reference", "beam"})
     expect_picture(scene.trace, spec, [](auto, auto) { return glm::vec3(static_cast<float>(encoded_as_srgb(0.5))); });
-  const std::vector<DrawNote> notes = notes_of(scene.trace, {0}, ProgramSet(scene.trace));
+  const std::vector<DrawNote> notes = notes_of(scene.trace, {0}, ProgramSet(scene.trace), "");
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0].reason.substr(0, 43), "in one grey, as shader \"shader\" cannot run:");
   EXPECT_EQ(notes[0].reason.find('\n'), std::string::npos);

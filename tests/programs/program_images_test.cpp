@@ -171,16 +171,95 @@ TEST(ProgramImages, DetailComesFromDerivatives) {
   EXPECT_EQ(reader.numbers({.action = ImageAction::query_lod, .at = {0.1f}, .dx = {1.5f}, .dy = {0.0f}})[1], 1.5625f);
 }
 
-// Three texels along x and none along y. Three samples on the longer side are each taken at level 0.
-TEST(ProgramImages, AnisotropyTakesSamplesAlongTheLongerSide) {
-  Reader reader(numbered(ImageShape::d2, 16, 16, 1, 1, 5), linear(SamplerWrap::repeat));
-  const Question question{.at = {0.5f, 0.53125f}, .dx = {3.0f / 16, 0}, .dy = {0, 1.0f / 16}};
-  reader.sampler().anisotropy = 16;
-  EXPECT_FLOAT_EQ(reader(question), 8 * 16 + 7.5f);
-  EXPECT_EQ(reader.texels(), 3 * 4u);
-  reader.sampler().anisotropy = 1;
-  reader(question);
-  EXPECT_EQ(reader.texels(), 8u);  // of two levels
+// A footprint of one texel on each axis: a x^2 + c y^2 with a = c = 2 of a c = 4. Beside the texel in the middle are
+// four at half of it, weight exp(-1), and four at its end, weight exp(-2).
+TEST(ProgramImages, AnisotropicFootprintsHaveGaussianWeights) {
+  ProgramImage image = numbered(ImageShape::d2, 8, 8);
+  std::vector<float> numbers(64);
+  numbers[8 * 4 + 4] = 1;
+  image.texels = bytes_of(numbers);
+  ProgramSampler sampler = linear(SamplerWrap::repeat);
+  sampler.anisotropy = 4;
+  Reader reader(image, sampler);
+  const auto at_texel = [&](float x, float y) {
+    return reader({.at = {(x + 0.5f) / 8, (y + 0.5f) / 8}, .dx = {0.125f, 0}, .dy = {0, 0.125f}});
+  };
+  const double e1 = std::exp(-1.0), e2 = std::exp(-2.0), all = 1 + 4 * e1 + 4 * e2;
+  EXPECT_NEAR(at_texel(4, 4), 1 / all, 2e-4);
+  EXPECT_EQ(reader.texels(), 9u);
+  EXPECT_NEAR(at_texel(5, 4), e1 / all, 2e-4);
+  EXPECT_NEAR(at_texel(3, 5), e2 / all, 2e-4);
+  EXPECT_EQ(at_texel(4, 6), 0);
+}
+
+// Slopes of 8 and 1 texels: 2 x^2 + 65 y^2 up to 130. Level 0, because the shorter one is 1.
+TEST(ProgramImages, AnisotropyAveragesAlongTheLongerSide) {
+  ProgramImage image = numbered(ImageShape::d2, 32, 32, 1, 1, 6);
+  std::vector<float> numbers(level_start(image, 6) / sizeof(float), 7.0f);
+  for (std::size_t y = 0; y < 32; ++y)
+    for (std::size_t x = 0; x < 32; ++x) numbers[32 * y + x] = x >= 16 ? 1.0f : 0.0f;  // a step
+  image.texels = bytes_of(numbers);
+  ProgramSampler sampler = linear();
+  sampler.anisotropy = 16;
+  Reader reader(image, sampler);
+  const auto at_column = [&](int x) {
+    return reader(
+        {.at = {(static_cast<float>(x) + 0.5f) / 32, 16.5f / 32}, .dx = {8.0f / 32, 0}, .dy = {0, 1.0f / 32}});
+  };
+  for (const int column : {6, 7, 12, 15, 16, 20, 24}) {
+    double bright = 0, all = 0;
+    for (int x = -9; x <= 9; ++x)
+      for (int y = -1; y <= 1; ++y) {
+        const double square = x * x / 65.0 + y * y / 2.0;
+        if (square > 1) continue;
+        all += std::exp(-2 * square);
+        if (column + x >= 16) bright += std::exp(-2 * square);
+      }
+    EXPECT_NEAR(at_column(column), bright / all, 1e-3) << column;
+  }
+  EXPECT_EQ(reader.texels(), 17 + 2 * 11u);  // |x| <= 8 where y is 0, x^2 <= 32.5 beside it
+  // Along the step the mean is that of a short side, and turned by 45 degrees it is a half on the step's own edge.
+  const Question along{.at = {14.5f / 32, 16.5f / 32}, .dx = {1.0f / 32, 0}, .dy = {0, 8.0f / 32}};
+  EXPECT_EQ(reader(along), 0);
+  const Question turned{.at = {16.0f / 32, 16.0f / 32}, .dx = {4.0f / 32, 4.0f / 32}, .dy = {1.0f / 32, -1.0f / 32}};
+  EXPECT_NEAR(reader(turned), 0.5f, 1e-3);
+}
+
+// 3.9 texels on both axes: log2 is 1.96, and level 1 is read alone.
+TEST(ProgramImages, AnisotropyReadsOneLevel) {
+  ProgramImage image = numbered(ImageShape::d2, 16, 16, 1, 1, 5);
+  std::vector<float> numbers(level_start(image, 5) / sizeof(float));
+  for (std::uint32_t level = 0; level < 5; ++level)
+    std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(level_start(image, level) / sizeof(float)), numbers.end(),
+              static_cast<float>(level));
+  image.texels = bytes_of(numbers);
+  ProgramSampler sampler = linear(SamplerWrap::repeat);
+  sampler.anisotropy = 2;
+  Reader reader(image, sampler);
+  const auto at_slopes = [&](float right, float down) {
+    return reader({.at = {0.3f, 0.7f}, .dx = {right / 16, 0}, .dy = {0, down / 16}});
+  };
+  EXPECT_FLOAT_EQ(at_slopes(3.9f, 3.9f), 1);
+  EXPECT_FLOAT_EQ(at_slopes(4.1f, 4.1f), 2);
+  EXPECT_FLOAT_EQ(at_slopes(100, 2.1f), 1);  // the shorter one chooses
+  EXPECT_FLOAT_EQ(at_slopes(0.1f, 0), 0);
+  EXPECT_FLOAT_EQ(at_slopes(1e9f, 1e9f), 4);
+  EXPECT_FLOAT_EQ(at_slopes(1e9f, 0), 0);
+  EXPECT_LT(reader.texels(), 3000u);  // 256 texels to both sides
+}
+
+// On the left edge of the image, without slopes: a circle of one texel around the edge holds two texels of the image
+// and two of the border, all at the same distance.
+TEST(ProgramImages, AnisotropicFootprintsHoldTheBorder) {
+  ProgramImage image = numbered(ImageShape::d2, 4, 4);
+  image.texels = bytes_of(std::vector<float>(16, 3.0f));
+  ProgramSampler sampler = linear(SamplerWrap::clamp_to_border);
+  sampler.border = glm::vec4(1, 0, 0, 1);
+  sampler.anisotropy = 4;
+  Reader reader(image, sampler);
+  EXPECT_FLOAT_EQ(reader({.at = {0, 0.5f}, .dx = {0, 0}, .dy = {0, 0}}), 2);
+  EXPECT_EQ(reader.texels(), 2u);
+  EXPECT_FLOAT_EQ(reader({.at = {-2, 0.5f}, .dx = {0, 0}, .dy = {0, 0}}), 1);
 }
 
 // Each face has its number, and its texels grow by 0.1 along s and by 1 along t.
@@ -290,6 +369,11 @@ TEST(ProgramImages, AnyNumberIsSafe) {
   Reader cube(numbered(ImageShape::cube, 4, 4, 1, 6, 3), linear());
   for (const float value : {0.0f, NAN, INFINITY, -INFINITY, 1e38f})
     cube({.at = {value, 0, value}, .dx = {value, 0, 1}, .dy = {NAN, value, 0}});
+  reader.sampler().anisotropy = cube.sampler().anisotropy = 16;
+  for (const float value : {0.0f, NAN, INFINITY, -INFINITY, 1e38f}) {
+    reader({.at = {value, 0.5f}, .dx = {value, 1}, .dy = {0, value}, .offset = {1 << 30, 0}});
+    cube({.at = {1, value, 0}, .dx = {value, 0, 1}, .dy = {0, value, 0}});
+  }
 }
 
 }  // namespace beampipe::program_images_test

@@ -193,7 +193,9 @@ DrawState random_state(std::mt19937& random) {
   if (state.blend && chance()) state.blend->alpha = equation();
   if (state.blend && chance()) state.blend->constant = {0.5f, 0, 1, std::abs(number())};
   if (chance()) state.color_mask = below(16);
-  if (chance()) state.stencil = {compare(), below(256), below(256), below(256), operation(), operation(), operation()};
+  for (std::optional<Stencil>* const face : {&state.stencil, &state.stencil_back})
+    if (chance()) *face = {compare(), below(256), below(256), below(256), operation(), operation(), operation()};
+  if (chance()) state.stencil_cleared_to = below(256);
   return state;
 }
 
@@ -215,6 +217,7 @@ Trace random_capture(unsigned seed) {
   Frame& frame = trace.frames[0];
   frame.width = 3;
   frame.height = 2;
+  if (random() % 2 == 0) frame.background_alpha = 0.25f;
   for (Draw& draw : frame.draws) draw.state = random_state(random);
   frame.capture.passes = {{"shadow map", 512, 512, 3, 99, false, "not shown"}, {"main", 3, 2, 6, 12, true, ""}};
   frame.capture.left_out = {{"lines", 2, 40}};

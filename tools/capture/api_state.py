@@ -27,9 +27,10 @@ def read_state(controller, depth_format):
         "viewport": [viewport.x, viewport.y, viewport.width, viewport.height],
         "depth_range": [viewport.minDepth, viewport.maxDepth],
         "scissor": [scissor.x, scissor.y, scissor.width, scissor.height] if scissor.enabled else None,
+        "line_width": raster.lineWidth, "line_mode": raster.lineRasterMode.name,
+        "has_stipple": raster.lineStippleFactor > 0 and raster.lineStipplePattern != 0xFFFF,
         "front_ccw": raster.frontCCW, "cull": raster.cullMode.name, "fill": raster.fillMode.name,
         "color_mask": blend.writeMask if blend else 0,
         "blend": {"color": _equation(blend.colorBlend), "alpha": _equation(blend.alphaBlend),
                   "constant": list(vulkan.colorBlend.blendFactor)} if blend and blend.enabled else None,
-        "stencil": _stencil(depth.backFace if raster.cullMode.name == "Front" else depth.frontFace)
-        if depth.stencilTestEnable else None}
+        "stencil": (_stencil(depth.frontFace), _stencil(depth.backFace)) if depth.stencilTestEnable else None}

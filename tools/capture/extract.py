@@ -1,8 +1,8 @@
 """One worker of the extraction: `python3 extract.py JOB`. Reads the draws that are its share out of a capture.
 
 JOB is a JSON file: capture, folder (for results), share and shares (draws number share, share + shares, ...), pictures
-(whether this worker takes the pictures instead), target (a colour target's number or null). Results are pickles, also
-those of images, each of which whichever worker needs it first writes."""
+("before" or "after" the draws, which this worker takes instead, or null), target (a colour target's number or null).
+Results are pickles, also those of images, each of which whichever worker needs it first writes."""
 import json
 import os
 import pickle
@@ -57,22 +57,19 @@ def take_image(replay, image, key, folder):
                                   "levels": texture.mips})
 
 
-def read_draw(replay, programs, action, depth_format, folder):
+def read_draw(replay, programs, action, kept, folder):
     """What a draw is, as a dictionary; `left_out` says why it has no geometry."""
     controller = replay.controller
     controller.SetFrameEvent(action.event, False)
-    api = read_state(controller, depth_format)
+    api = read_state(controller, replay.format_name(kept.depth))
     draw = {"event": action.event, "api": api, "vertices": action.vertices, "left_out": None, "primitives": 0}
     if api["discards_all"]:
         return {**draw, "left_out": "rasterization is off"}
-    if api["cull"] == "FrontAndBack":
-        return {**draw, "left_out": "both faces are culled"}
-    if api["fill"] != "Solid":
-        return {**draw, "left_out": "triangles drawn as lines or points", "primitives": action.vertices // 3}
     program = programs.read()
     try:
-        clip, varyings, triangles = post_vertex.read_geometry(replay, replay.command(action.event), api["z_from_0"],
-                                                              program["inputs"] if program else [])
+        clip, varyings, triangles = post_vertex.read_geometry(
+            replay, replay.command(action.event), api, program["inputs"] if program else [],
+            replay.samples_of(kept.color or kept.depth))
     except post_vertex.LeftOut as reason:
         return {**draw, "left_out": reason.reason, "primitives": reason.primitives}
     for image in program["images"] if program else []:
@@ -84,11 +81,17 @@ def read_draw(replay, programs, action, depth_format, folder):
     return {**draw, "clip": clip, "varyings": varyings, "triangles": triangles, "program": program}
 
 
+def take_pictures_before(replay, kept):
+    """What the targets have before their first draw."""
+    replay.controller.SetFrameEvent(kept.draws[0].event - 1, True)
+    color = replay.color_picture(kept.color) if kept.color else None
+    depth, stencil = replay.depth_and_stencil(kept.depth)
+    return {"color_before": color, "depth_before": depth, "stencil_before": stencil}
+
+
 def take_pictures(replay, found, kept):
-    """The target before its first draw and after its last one, and what all passes are."""
-    first, last = kept.draws[0].event, kept.draws[-1].event
-    replay.controller.SetFrameEvent(first - 1, True)
-    color, depth = replay.color_picture(kept.color) if kept.color else None, replay.depth_picture(kept.depth)
+    """What the targets have after their last draw, and what all passes are."""
+    last = kept.draws[-1].event
     replay.controller.SetFrameEvent(last, True)
     size = replay.size_of(kept.color or kept.depth)
     drawn = [action.event for action in replay.actions() if action.is_draw]
@@ -96,9 +99,9 @@ def take_pictures(replay, found, kept):
         "api": replay.api, "driver": replay.driver, "filtering": FILTERING, "size": size,
         "samples": replay.samples_of(kept.color or kept.depth),
         "color_format": replay.format_name(kept.color), "depth_format": replay.format_name(kept.depth),
-        "color_before": color, "depth_before": depth,
-        "color": replay.color_picture(kept.color) if kept.color else None, "depth": replay.depth_picture(kept.depth),
-        "kept": kept.name, "kept_color": kept.color, "cleared_before": sorted(kept.cleared_before),
+        "color": replay.color_picture(kept.color) if kept.color else None,
+        "depth": replay.depth_and_stencil(kept.depth)[0],
+        "kept": kept.name, "kept_color": kept.color, "cleared_before": kept.cleared_before,
         "events": [draw.event for draw in kept.draws], "later_draws": sum(event > last for event in drawn),
         "passes": [{"name": one.name, "color": one.color, "size": replay.size_of(one.color or one.depth),
                     "draws": len(one.draws), "triangles": one.vertices // 3, "kept": one is kept,
@@ -114,13 +117,17 @@ def main(job_path):
     try:
         replay = Replay(job["capture"], for_draws=not job["pictures"])
         found, kept = kept_pass(replay, job["target"])
-        if job["pictures"]:
+        # One worker does not take both: where depth with stencil has samples, RenderDoc crashes when it replays more
+        # after it was read.
+        if job["pictures"] == "before":
+            value = take_pictures_before(replay, kept)
+        elif job["pictures"] == "after":
             value = take_pictures(replay, found, kept)
         else:
-            programs, depth_format, value = Programs(replay), replay.format_name(kept.depth), []
+            programs, value = Programs(replay), []
             with open(result + ".count", "wb", buffering=0) as count:
                 for action in kept.draws[job["share"]:: job["shares"]]:
-                    value.append(read_draw(replay, programs, action, depth_format, job["folder"]))
+                    value.append(read_draw(replay, programs, action, kept, job["folder"]))
                     count.write(b".")
         write_pickle(result + ".pickle", value)
         replay.close()

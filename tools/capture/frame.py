@@ -1,8 +1,19 @@
 """A captured frame as plain arrays: the pictures and the draws, in order, ready for the trace."""
+import re
+
 import numpy as np
 
 import srgb
 import state as draw_state
+from passes import Clears
+
+
+def most_common(picture, otherwise):
+    """The most common value of a picture, or `otherwise` if there is none."""
+    if picture is None:
+        return otherwise
+    values, counts = np.unique(picture, return_counts=True)
+    return values[counts.argmax()].item()
 
 
 class Draw:
@@ -27,16 +38,21 @@ class Frame:
         encoded = lambda picture: None if picture is None else np.clip(
             srgb.from_linear(picture[..., :3]) if is_float else picture[..., :3], 0, 1)
         self.color, self.color_before = encoded(pictures["color"]), encoded(pictures["color_before"])
+        self.background_alpha = most_common(None if pictures["color_before"] is None else
+                                            np.clip(pictures["color_before"][..., 3], 0, 1), 1.0)
         self.depth, self.depth_before = pictures["depth"], pictures["depth_before"]
+        self.has_alpha = not pictures["color_format"] or bool(re.search(r"A\d", pictures["color_format"]))
         self.passes = pictures["passes"]
         self.draws, self.left_out = [], {}
-        cleared, owed = set(pictures["cleared_before"]), False
+        owed = Clears(stencil=most_common(pictures["stencil_before"], 0) or None)
         for one in found:
-            owed = owed or one["event"] in cleared  # a clear right before a draw that is left out still counts
+            if one["event"] in pictures["cleared_before"]:  # also if the draw is left out
+                owed = owed.then(pictures["cleared_before"][one["event"]])
+                self._check_clears(pictures["cleared_before"][one["event"]])
             reason, primitives = one["left_out"], one["primitives"]
             if not reason:
                 try:
-                    state = draw_state.state_of(one["api"], self.width, self.height)
+                    state = draw_state.state_of(one["api"], self.width, self.height, self.has_alpha)
                     if one["program"] is None:  # without a fragment shader there is no colour
                         state["color_mask"] = ""
                     if not state.get("depth_write", True) and state.get("color_mask") == "" and "stencil" not in state:
@@ -46,24 +62,32 @@ class Frame:
                 except ValueError as error:
                     reason, primitives = str(error), len(one["triangles"])
             if reason:
-                draws, count = self.left_out.get(reason, (0, 0))
-                self.left_out[reason] = (draws + 1, count + primitives)
+                self._leave_out(reason, primitives)
                 continue
             if not len(one["triangles"]):
                 continue
-            if owed:
+            if owed.depth is not None:
                 state["clears_depth"] = True
-                owed = False
+            if owed.stencil is not None:
+                state["clears_stencil"] = owed.stencil
+            owed = Clears()
             self.draws.append(Draw(one, state))
         self.triangles = sum(len(draw.triangles) for draw in self.draws)
+
+    def _leave_out(self, reason, primitives):
+        draws, count = self.left_out.get(reason, (0, 0))
+        self.left_out[reason] = (draws + 1, count + primitives)
+
+    def _check_clears(self, clears):
+        if clears.parts:
+            self._leave_out("a clear of a part of the target", 0)
+        if clears.depth is not None and abs(clears.depth - self.clear_depth) > 1e-6:
+            self._leave_out("a clear to another depth than before the first draw", 0)
 
     @property
     def clear_depth(self):
         """What most of the depth buffer had before the first draw."""
-        if self.depth_before is None:
-            return 1.0
-        values, counts = np.unique(self.depth_before, return_counts=True)
-        return float(values[counts.argmax()])
+        return float(most_common(self.depth_before, 1.0))
 
     @property
     def background(self):

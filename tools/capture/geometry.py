@@ -1,5 +1,5 @@
-"""Triangles from what a graphics API draws: lists, strips and fans, vertices shared again, user clip planes.
-The first corner of a triangle is its provoking vertex, which gives it its flat inputs (Vulkan 1.3, section 21.1).
+"""Primitives from what a graphics API draws: lists, strips and fans, vertices shared again, user clip planes.
+The first corner of a primitive is its provoking vertex, which gives it its flat inputs (Vulkan 1.3, section 21.1).
 
 Positions are clip positions, n x 4 float32; triangles are m x 3 indices. Nothing here knows RenderDoc."""
 import numpy as np
@@ -31,22 +31,43 @@ def _list_with_neighbours(run):
     return run[: len(run) // 6 * 6].reshape(-1, 6)[:, ::2]
 
 
-_SHAPES = {"TriangleList": _list, "TriangleStrip": _strip, "TriangleFan": _fan,
-           "TriangleList_Adj": _list_with_neighbours}
+def _points(run):
+    return run.reshape(-1, 1)
 
 
-def triangles_of(topology, indices, restart=None):
-    """Triples of indices, or None where the topology has no triangles (points, lines, patches).
+def _line_list(run):
+    return run[: len(run) // 2 * 2].reshape(-1, 2)
 
-    `topology` is the name of RenderDoc's topology. Incomplete triangles at the end of a run are left out, as in the
+
+def _line_strip(run):
+    return np.stack([run[:-1], run[1:]], 1)
+
+
+def _line_list_with_neighbours(run):
+    return run[: len(run) // 4 * 4].reshape(-1, 4)[:, 1:3]
+
+
+def _line_strip_with_neighbours(run):
+    return _line_strip(run[1:-1])
+
+
+# With how many corners a primitive has.
+_SHAPES = {"PointList": (1, _points), "LineList": (2, _line_list), "LineStrip": (2, _line_strip),
+           "LineList_Adj": (2, _line_list_with_neighbours), "LineStrip_Adj": (2, _line_strip_with_neighbours),
+           "TriangleList": (3, _list), "TriangleStrip": (3, _strip), "TriangleFan": (3, _fan),
+           "TriangleList_Adj": (3, _list_with_neighbours)}
+
+
+def corners_of(topology, indices, restart=None):
+    """The corners of points, lines or triangles, n x 1, 2 or 3 indices; None for other topologies (patches).
+
+    `topology` is the name of RenderDoc's topology. Incomplete primitives at the end of a run are left out, as in the
     APIs."""
-    shape = _SHAPES.get(topology)
-    if shape is None:
+    if topology not in _SHAPES:
         return None
-    if topology == "TriangleList" and restart is None:
-        return _list(indices)
-    parts = [shape(run) for run in split_at_restart(indices, restart) if len(run) >= 3]
-    return np.concatenate(parts) if parts else np.zeros((0, 3), indices.dtype)
+    corners, shape = _SHAPES[topology]
+    parts = [shape(run) for run in split_at_restart(indices, restart) if len(run) >= corners]
+    return np.concatenate(parts) if parts else np.zeros((0, corners), indices.dtype)
 
 
 def primitives_of(topology, count):

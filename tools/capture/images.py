@@ -145,3 +145,12 @@ def decode_depth(data, width, height, format):
     else:
         return None
     return np.ascontiguousarray(depth, np.float32).reshape(height, width)
+
+
+def decode_stencil(data, width, height, format):
+    """height x width uint8, or None if the format has no stencil."""
+    if format.kind not in ("D24S8", "D32S8"):
+        return None
+    words = np.frombuffer(data, "<u4", len(data) // 4)
+    stencil = words[: width * height] >> 24 if format.kind == "D24S8" else words[1: 2 * width * height: 2] & 255
+    return stencil.astype(np.uint8).reshape(height, width)

@@ -2,26 +2,43 @@
 import re
 
 _DEPTH_CLEARED = re.compile(r"\b(D|DS)=Clear|\(Clear\)")
+_STENCIL_CLEARED = re.compile(r"\b(S|DS)=Clear|\(Clear\)")
 _COLOR_CLEARED = re.compile(r"\bC=Clear|\(Clear\)")
 
 
 class Action:
     """What passes.py needs to know of a command: plain values, so that tests can make them."""
 
-    def __init__(self, event, name, is_draw, color, depth, vertices, clears_depth=False, clears_color=False,
-                 presented=0):
+    def __init__(self, event, name, is_draw, color, depth, vertices, clears=None, presented=0):
         self.event, self.name, self.is_draw, self.color, self.depth = event, name, is_draw, color, depth
-        self.vertices, self.clears_depth, self.clears_color = vertices, clears_depth, clears_color
-        self.presented = presented
+        self.vertices, self.clears, self.presented = vertices, clears or Clears(), presented
+
+
+class Clears:
+    """What a command clears: the whole colour target; the whole depth buffer, to a number; the whole stencil buffer, to
+    a number; or parts of any."""
+
+    def __init__(self, color=False, depth=None, stencil=None, parts=False):
+        self.color, self.depth, self.stencil, self.parts = color, depth, stencil, parts
+
+    @property
+    def is_some(self):
+        return self.depth is not None or self.stencil is not None or self.parts
+
+    def then(self, later):
+        """Both after each other."""
+        latest = lambda first, second: first if second is None else second
+        return Clears(self.color or later.color, latest(self.depth, later.depth), latest(self.stencil, later.stencil),
+                      self.parts or later.parts)
 
 
 class Pass:
-    """Draws with the same colour and depth target. `cleared_before` has the events of draws right before which the
-    depth was cleared, except for the first draw."""
+    """Draws with the same colour and depth target. `cleared_before`: by the events of draws, what was cleared right
+    before them, except for the first draw."""
 
     def __init__(self, color, depth):
         self.color, self.depth = color, depth
-        self.draws, self.cleared_before = [], set()
+        self.draws, self.cleared_before = [], {}
 
     @property
     def vertices(self):
@@ -33,28 +50,28 @@ class Pass:
 
 
 def clears_of(name):
-    """(depth, colour) that a render pass with this name clears as it begins."""
-    return bool(_DEPTH_CLEARED.search(name)), bool(_COLOR_CLEARED.search(name))
+    """Whether a render pass with this name clears (colour, depth, stencil) as it begins."""
+    return tuple(bool(each.search(name)) for each in (_COLOR_CLEARED, _DEPTH_CLEARED, _STENCIL_CLEARED))
 
 
 def group(actions):
     """The passes in the order of their first draws. A target that is cleared again starts anew: what was drawn to it
     earlier cannot be seen any more."""
-    passes, open_passes, pending = [], {}, set()
+    passes, open_passes, pending = [], {}, {}
     for action in actions:
         key = (action.color, action.depth)
-        if action.clears_color and key in open_passes:
-            del open_passes[key]
-        if action.clears_depth:
-            pending.add(action.depth)
+        if action.clears.color:
+            for other in [other for other in open_passes if other[0] == action.color]:
+                del open_passes[other]
+        pending[action.depth] = pending.get(action.depth, Clears()).then(action.clears)
         if not action.is_draw:
             continue
         if key not in open_passes:
             open_passes[key] = Pass(*key)
             passes.append(open_passes[key])
-        elif action.depth in pending:
-            open_passes[key].cleared_before.add(action.event)
-        pending.discard(action.depth)
+        elif pending[action.depth].is_some:
+            open_passes[key].cleared_before[action.event] = pending[action.depth]
+        pending[action.depth] = Clears()
         open_passes[key].draws.append(action)
     return passes
 

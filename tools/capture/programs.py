@@ -16,6 +16,7 @@ _SHAPE = {"Texture1D": ("1d", False), "Texture1DArray": ("1d", True), "Texture2D
           "TextureRect": ("2d", False), "Texture2DArray": ("2d", True), "Texture3D": ("3d", False),
           "TextureCube": ("cube", False), "TextureCubeArray": ("cube", True)}
 _INTEGERS = ("UInt", "SInt")
+POINT_COORDINATES = 31  # the location of gl_PointCoord, which a trace has as a varying
 
 
 def input_of(parameter, ways):
@@ -61,11 +62,13 @@ class Programs:
             return None
         module = bytes(shader.rawBytes)
         ways = spirv.interpolations(module)
+        module, has_coordinates = spirv.with_point_coordinates(module, POINT_COORDINATES)
+        coordinates = [{"location": POINT_COORDINATES, "count": 2}] if has_coordinates else []
         buffers, specialization = self._blocks(shader, mapping)
         images, storage = self._resources(shader, mapping)
         return {"spirv": module, "specialization": specialization, "buffers": buffers + storage, "images": images,
                 "inputs": [input_of(one, ways) for one in shader.inputSignature
-                           if one.systemValue == rd.ShaderBuiltin.Undefined],
+                           if one.systemValue == rd.ShaderBuiltin.Undefined] + coordinates,
                 "push_constants": bytes(self.vulkan.pushconsts)}
 
     def _bytes(self, buffer, offset, size):

@@ -7,8 +7,9 @@ import numpy as np
 import renderdoc as rd
 
 import srgb
-from images import Format, decode_color, decode_depth, size_in_bytes, stored
-from passes import Action, clears_of
+import clears
+from images import Format, decode_color, decode_depth, decode_stencil, size_in_bytes, stored
+from passes import Action, Clears
 
 _NULL = rd.ResourceId.Null()
 _READS = re.compile("_Resource|_Constants|Src|Barrier|InputTarget|Unused|Discard")  # names of uses that write nothing
@@ -67,14 +68,28 @@ class Replay:
             flags = command.flags
             is_draw = bool(flags & rd.ActionFlags.Drawcall)
             color = next((int(output) for output in command.outputs if output != _NULL), 0)
-            name = "" if is_draw else command.GetName(self.structure)
-            clears_depth, clears_color = clears_of(name) if flags & rd.ActionFlags.BeginPass else (False, False)
-            if flags & rd.ActionFlags.Clear and flags & rd.ActionFlags.ClearDepthStencil and "epth" in name:
-                clears_depth = True
-            found.append(Action(command.eventId, name, is_draw, color, int(command.depthOut),
-                                command.numIndices * max(1, command.numInstances), clears_depth, clears_color,
+            depth, cleared, name = int(command.depthOut), None, ""
+            if not is_draw:
+                name = command.GetName(self.structure)
+                color, depth, cleared = self._clears(command, name, color, depth)
+            found.append(Action(command.eventId, name, is_draw, color, depth,
+                                command.numIndices * max(1, command.numInstances), cleared,
                                 int(command.copyDestination) if flags & rd.ActionFlags.Present else 0))
         return found
+
+    def _clears(self, command, name, color, depth):
+        """(colour target, depth target, what it clears) of a command that does not draw."""
+        if not len(command.events) or not command.flags & (rd.ActionFlags.BeginPass | rd.ActionFlags.Clear):
+            return color, depth, Clears()
+        chunk = self.structure.chunks[command.events[-1].chunkIndex]
+        if command.flags & rd.ActionFlags.BeginPass:
+            return color, depth, clears.of_render_pass(chunk, name)
+        if chunk.name == "vkCmdClearAttachments":
+            return color, depth, clears.of_attachments(chunk, self.size_of(color or depth))
+        target = int(command.copyDestination)
+        if chunk.name == "vkCmdClearDepthStencilImage":
+            return 0, target, clears.of_depth_image(chunk)
+        return target, 0, Clears(color=chunk.name == "vkCmdClearColorImage")
 
     def command(self, event):
         return next(command for command in self.commands if command.eventId == event)
@@ -111,11 +126,13 @@ class Replay:
         mean = sum(srgb.to_linear(sample[..., :3]) for sample in samples) / len(samples)
         return np.concatenate([srgb.from_linear(mean), sum(samples)[..., 3:] / len(samples)], -1, dtype=np.float32)
 
-    def depth_picture(self, texture):
-        """height x width float32 of window depths, row 0 on top, of sample 0; None if it cannot be read."""
+    def depth_and_stencil(self, texture):
+        """height x width float32 of window depths, and uint8 of stencil, row 0 on top, of sample 0; None for what is not
+        there or cannot be read."""
         if texture not in self.textures:
-            return None
-        return decode_depth(self._bytes(texture), *self.size_of(texture), self.format_of(texture))
+            return None, None
+        data, size, format = self._bytes(texture), self.size_of(texture), self.format_of(texture)
+        return decode_depth(data, *size, format), decode_stencil(data, *size, format)
 
     def version(self, texture, event):
         """How often the frame has written a texture before an event."""

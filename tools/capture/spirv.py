@@ -1,8 +1,10 @@
-"""How the inputs of a SPIR-V fragment shader vary over a triangle, from its decorations (SPIR-V specification, 3.20)."""
+"""The inputs of a SPIR-V fragment shader, from its decorations (SPIR-V specification, 3.20): how they vary over a
+triangle, and which one is the place in a point."""
 import struct
 
 _MEMBER_DECORATE, _DECORATE = 72, 71  # instructions
-_NO_PERSPECTIVE, _FLAT, _LOCATION = 13, 14, 30  # decorations
+_BUILTIN, _NO_PERSPECTIVE, _FLAT, _LOCATION = 11, 13, 14, 30  # decorations
+_POINT_COORD = 16  # a builtin
 _VARIABLE, _INPUT = 59, 1
 
 
@@ -12,6 +14,19 @@ def _instructions(words):
         count = max(1, words[place] >> 16)
         yield words[place] & 0xFFFF, words[place + 1: place + count]
         place += count
+
+
+def with_point_coordinates(module, location):
+    """The module with gl_PointCoord as an input at a location, and whether it has one. `module`: bytes."""
+    words = list(struct.unpack(f"<{len(module) // 4}I", module[: len(module) // 4 * 4]))
+    place, found = 5, False
+    while place < len(words):
+        count = max(1, words[place] >> 16)
+        if words[place] == 4 << 16 | _DECORATE and words[place + 2: place + 4] == [_BUILTIN, _POINT_COORD]:
+            words[place + 2: place + 4] = [_LOCATION, location]
+            found = True
+        place += count
+    return (struct.pack(f"<{len(words)}I", *words), True) if found else (module, False)
 
 
 def interpolations(module):

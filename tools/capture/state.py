@@ -60,7 +60,7 @@ def blend_of(blend):
     return color
 
 
-def state_of(api, width, height):
+def state_of(api, width, height, has_alpha=True):
     """A draw's state from `api`, what api_state.py has read, on a target of width x height pixels. What equals the
     trace format's default is left out."""
     state = {}
@@ -92,9 +92,13 @@ def state_of(api, width, height):
         blend = blend_of(api["blend"])
         if blend:
             state["blend"] = blend
-    mask = "".join(channel for bit, channel in enumerate("rgba") if api["color_mask"] >> bit & 1)
+    channels = "rgba" if has_alpha else "rgb"
+    mask = "".join(channel for bit, channel in enumerate(channels) if api["color_mask"] >> bit & 1)
     if mask != "rgba":
         state["color_mask"] = mask
-    if api["stencil"]:
-        state["stencil"] = stencil_of(api["stencil"])
+    if api["stencil"]:  # what is culled does not matter
+        front, back = (stencil_of(face) for face in api["stencil"])
+        state["stencil"] = back if api["cull"] == "Front" else front
+        if api["cull"] == "NoCull" and back != front:
+            state["stencil_back"] = back
     return state

@@ -96,7 +96,9 @@ def write_trace(path, frames, draws_of_frames, collection, source):
         thin = [without_area[draw["mesh"]] for draw in draws if without_area[draw["mesh"]]]
         if thin:
             frame.left_out["two corners of the triangle are one point"] = (len(thin), sum(thin))
-        entry = {"width": frame.width, "height": frame.height, "background": frame.background, "target": frame.target,
+        entry = {"width": frame.width, "height": frame.height, "background": frame.background,
+                 **({"background_alpha": frame.background_alpha} if frame.background_alpha != 1 else {}),
+                 "target": frame.target,
                  "passes": [{"name": one["name"], "width": one["size"][0], "height": one["size"][1],
                              "draws": one["draws"], "triangles": one["triangles"], "kept": one["kept"],
                              "reason": one["reason"]} for one in frame.passes],

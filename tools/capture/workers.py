@@ -25,11 +25,12 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
     """(pictures, draws in order) of a capture, as extract.py leaves them. `folder` must be new."""
     os.makedirs(folder, exist_ok=True)
     workers = []
-    for share in range(-1, 0 if pictures_only else jobs):  # worker -1 takes the pictures
-        stem = os.path.join(folder, "pictures" if share < 0 else f"draws{share}")
+    tasks = [("after", 0), ("before", 0)] + ([] if pictures_only else [(None, share) for share in range(jobs)])
+    for pictures, share in tasks:
+        stem = os.path.join(folder, pictures or f"draws{share}")
         with open(stem + ".json", "w") as file:
-            json.dump({"capture": capture, "folder": folder, "share": max(0, share), "shares": jobs,
-                       "pictures": share < 0, "target": target}, file)
+            json.dump({"capture": capture, "folder": folder, "share": share, "shares": jobs, "pictures": pictures,
+                       "target": target}, file)
         environment = {**os.environ, "DISPLAY": display}
         with open(stem + ".log", "wb") as log:
             process = processes.start([sys.executable, os.path.join(os.path.dirname(__file__), "extract.py"),
@@ -62,7 +63,7 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
         results.append(result)
     if len(results) < len(workers):
         raise Failure("RenderDoc could not replay the capture")
-    draws = [None] * sum(len(result) for result in results[1:])
-    for share, result in enumerate(results[1:]):
+    draws = [None] * sum(len(result) for result in results[2:])
+    for share, result in enumerate(results[2:]):
         draws[share::jobs] = result
-    return results[0], draws
+    return {**results[0], **results[1]}, draws

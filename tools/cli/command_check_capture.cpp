@@ -102,7 +102,7 @@ class FrameCheck {
       : trace_(trace), number_(number), frame_(trace.frames[number]), textures_(textures), output_(output) {
     // A pixel's depths, and what is rasterized at a time.
     require_memory(trace, frame_, 64, "frame " + std::to_string(number), machine_memory());
-    found_ = sampled_depths(trace, without_blending(frame_), &textures);
+    found_ = sampled_depths(trace, frame_, &textures);
     if (frame_.capture.pictures.depth.empty())
       text_ += name() + "the trace has no captured depth\n";
     else
@@ -164,7 +164,7 @@ void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
     output.emplace(arguments.output, gate);
   }
   const TextureSet textures(trace);
-  const std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs());
+  const std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs(), "");
   tell_notes(notes);
   Json json = {{"beampipe_check_capture", 1}, {"trace", arguments.trace}, {"frames", Json::array()}};
   if (!notes.empty()) json["notes"] = notes_form().write(notes);

@@ -292,7 +292,7 @@ void add_info_command(CommandLine& line) {
     std::iota(frames.begin(), frames.end(), std::size_t{0});
     if (const std::string note = note_on_darkness(trace, frames, arguments->trace); !note.empty())
       std::cerr << "beampipe: " << note << "\n";
-    tell_notes(notes_of(trace, frames, ProgramSet(trace)));
+    tell_notes(notes_of(trace, frames, ProgramSet(trace), "techniques that draw by depth"));
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));
   });
 }

@@ -169,7 +169,7 @@ RunPlan make_plan(const RunArguments& arguments) {
       std::cerr << "beampipe: note: " << spec << " works over several frames; the first one has no history\n";
   if (const std::string note = note_on_motion(plan.trace, plan.frames, with_history, arguments.trace); !note.empty())
     std::cerr << "beampipe: note: " << note << "\n";
-  plan.notes = notes_of(plan.trace, plan.frames, plan.textures->programs());
+  plan.notes = notes_of(plan.trace, plan.frames, plan.textures->programs(), drawing_by_depth(plan.techniques));
   return plan;
 }
 

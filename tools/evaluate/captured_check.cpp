@@ -3,30 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "simd/sample_pattern.h"
-#include "stages/data/sample_tile.h"
+#include "stages/data/ordered_tile.h"
 #include "stages/geometry/vertex_setup.h"
 #include "stages/raster/sample_raster.h"
 #include "stages/samples/alpha_test.h"
-#include "stages/samples/test_depth.h"
+#include "stages/samples/ordered_test.h"
 
 namespace beampipe {
 namespace {
 
-constexpr std::size_t kChunk = 4096;  // triangles that are rasterized at once
-
-// Of the frame's draws: do they write depth that is still there at the end?
-std::vector<bool> writers_of(const Frame& frame) {
-  std::vector<bool> writers;
-  for (const Draw& draw : frame.draws) {
-    const DepthState& depth = draw.state.depth;
-    if (depth.cleared_before) writers.assign(writers.size(), false);
-    writers.push_back(depth.test && depth.write);
-  }
-  return writers;
-}
+constexpr std::uint32_t kChunk = 4096;  // triangles that are rasterized at once
 
 enum class Match { nothing, equal, close, far, only_here, only_there };
 
@@ -70,17 +60,9 @@ std::vector<DrawDifference> DrawDifferences::sorted() const {
   return draws;
 }
 
-Frame without_blending(Frame frame) {
-  for (Draw& draw : frame.draws) {
-    draw.state.color_mask = kAllChannels;
-    draw.state.blend.reset();
-  }
-  return frame;
-}
-
 SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
   StageCounters ignored;
-  SetupTriangles triangles = vertex_setup(trace, frame, ignored);
+  SetupTriangles triangles = vertex_setup(trace, frame, ignored, false, DrawOrder::of_api);
   if (textures) without_refused(triangles, frame, textures->programs());
   const SurfaceShader shader(triangles, trace, frame, textures, {});
   const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
@@ -89,36 +71,33 @@ SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const Textu
   const auto in_pixel = [](std::int32_t place) { return static_cast<float>(place) / kSubpixelUnits; };
   const glm::vec2 at(in_pixel(first.pattern.x[0]), in_pixel(first.pattern.y[0]));
   const SampledTriangles samples{triangles, whole, first};
-  const std::vector<bool> writers = writers_of(frame);
-  SampleTile surface(whole, first);
+  const RopRules rules(trace, frame, frame.background);
+  constexpr bool kHasStencil = true;
+  OrderedTile surface(whole, 1, rules.clear_depth, kHasStencil, rules.clear_color);
+  std::vector<std::uint32_t> owner(whole.pixels());  // the triangle that wrote depth last
   std::vector<SampleFragment> fragments;
-  std::vector<SampleAccess> accesses;
-  TriangleList list;
-  const auto draw_list = [&] {
+  std::vector<OrderedAccess> accesses;
+  for (std::uint32_t begin = 0; begin < triangles.triangles.size(); begin += kChunk) {
+    TriangleList list(std::min<std::size_t>(kChunk, triangles.triangles.size() - begin));
+    std::iota(list.begin(), list.end(), begin);
     fragments.clear();
     sample_raster(samples, list, ignored, fragments);
     if (!shader.is_flat()) {
       const std::vector<glm::vec2> places(fragments.size(), at);
       alpha_test(whole_shader, {whole, first, AlphaCoverage::test, places}, ignored, fragments);
     }
-    depth_test(samples, fragments, ignored, surface, accesses);
-    list.clear();
-  };
-  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) {
-    if (writers[triangles.draws[i]]) list.push_back(i);
-    if (list.size() == kChunk) draw_list();
+    ordered_test(samples, rules, ignored, surface, fragments, accesses);
+    for (const OrderedAccess& access : accesses)
+      if (access.written != 0 && rules.of(triangles, access.triangle).writes_depth)
+        owner[access.cell] = access.triangle;
   }
-  draw_list();
 
   SampledDepths found{std::vector<double>(whole.pixels()), std::vector<std::uint32_t>(whole.pixels(), kNoDraw)};
   for (std::size_t pixel = 0; pixel < whole.pixels(); ++pixel) {
-    const std::uint32_t triangle = surface.triangle[pixel];
-    if (triangle == kNoTriangle) continue;
-    const std::uint32_t draw = found.draw[pixel] = triangles.draws[triangle];
-    const DrawPlacement placement = triangles.placements.empty() ? DrawPlacement{} : triangles.placements[draw];
+    if (surface.depth[pixel] == rules.clear_depth) continue;
+    found.draw[pixel] = triangles.draws[owner[pixel]];
     const double x = static_cast<double>(pixel % frame.width), y = static_cast<double>(pixel / frame.width);
-    const double depth = triangles.triangles[triangle].depth.at(x + at.x, y + at.y);
-    found.depth[pixel] = std::clamp((depth - placement.window_offset) / placement.window_scale, 0.0, 1.0);
+    found.depth[pixel] = std::clamp(triangles.triangles[owner[pixel]].depth.at(x + at.x, y + at.y) + 1, 0.0, 1.0);
   }
   return found;
 }

@@ -21,12 +21,8 @@ struct SampledDepths {
   std::vector<std::uint32_t> draw;  // index into Frame::draws, or kNoDraw
 };
 
-// The frame with draws that all write their colours as they are, so that none is left out for what it does with
-// colours, such as draws that write only depth. Depths stay.
-Frame without_blending(Frame frame);
-
-// Draws what writes depth after the last depth clear, at the first of as many samples as the program had: with one, at
-// the pixel's centre. Cutouts are tested there.
+// Draws everything in the API's order, at the first of as many samples as the program had: with one, at the pixel's
+// centre. Cutouts are tested there.
 // `textures`: of the trace; may be null if the frame's draws have none.
 SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);
 

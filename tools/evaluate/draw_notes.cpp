@@ -7,11 +7,20 @@
 
 namespace beampipe {
 
-std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs) {
+std::string drawing_by_depth(const std::vector<Technique>& techniques) {
+  std::string names;
+  for (const Technique& technique : techniques)
+    if (!technique.keeps_api_order) names += (names.empty() ? "" : ", ") + technique.spec;
+  return names;
+}
+
+std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs,
+                               const std::string& by_depth) {
   std::vector<DrawNote> notes;
   for (const std::size_t frame : frames) {
-    for (const DrawNote& note : plan_draws(trace, trace.frames[frame]).notes)
-      add_note(notes, note.reason, note.left_out, note.draws, note.triangles);
+    if (!by_depth.empty())
+      for (const DrawNote& note : plan_draws(trace, trace.frames[frame]).notes)
+        add_note(notes, note.reason + " (" + by_depth + ")", note.left_out, note.draws, note.triangles);
     for (const Draw& draw : trace.frames[frame].draws) {
       if (!draw.program) continue;
       const auto note = [&](const std::string& reason) {

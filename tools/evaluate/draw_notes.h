@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/technique.h"
 #include "stages/geometry/draw_notes.h"
 #include "stages/surface/program_set.h"
 #include "traces/files/json_form.h"
@@ -12,8 +13,12 @@
 namespace beampipe {
 
 // One note for each reason. A draw counts in each frame that has it. `frames`: indices into the trace. `programs`: of
-// the trace.
-std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs);
+// the trace. `by_depth`: who does not keep the API's order, by names; empty: everybody does.
+std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames, const ProgramSet& programs,
+                               const std::string& by_depth);
+
+// The specs of those techniques that do not, as words.
+std::string drawing_by_depth(const std::vector<Technique>& techniques);
 
 // "12 draws (340 triangles) are left out: stencil test"
 std::string text_of(const DrawNote& note);

@@ -357,8 +357,6 @@ Form<Frame> frame_form(const Reader& reader) {
   frame.required("width", &Frame::width, side, "Width of the picture, in pixels.")
       .required("height", &Frame::height, side, "Height of the picture, in pixels.")
       .optional("background", &Frame::background, form::color(), "Linear RGB where nothing is drawn.")
-      .optional("background_alpha", &Frame::background_alpha, form::fraction(),
-                "What blend functions read of the destination's alpha where nothing is drawn.")
       .optional("camera", &Frame::camera, camera_form(),
                 "A pinhole camera with square pixels, right-handed, looking from `eye` to `target`.")
       .optional("view", &Frame::view, form::matrix(), "World to eye space; in place of `camera`, with `projection`.")
@@ -367,6 +365,8 @@ Form<Frame> frame_form(const Reader& reader) {
   frame.add({"draws", "What is drawn, in this order; may be empty.", true, form::list(draw).schema,
              [draw, &reader](const JsonCursor& at, Frame& result) { read_draws(at, draw, reader, result); }});
   if (reader.version > 1) {
+    frame.optional("background_alpha", &Frame::background_alpha, form::fraction(),
+                   "What blend functions read of the destination's alpha where nothing is drawn.");
     frame.optional("target", &Frame::target, color_target_form(),
                    "What is stored of what programs' shaders return: srgb: its code as sRGB; unorm: the number itself, "
                    "which is the picture's code divided by 255.");

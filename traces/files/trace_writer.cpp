@@ -27,7 +27,7 @@ bool needs_version_2(const Frame& frame) {
   const auto& [lights, ambient] = frame.lighting;
   return lights.size() > 1 || (lights.size() == 1 && lights[0].color != glm::vec3(1.0f)) || ambient ||
          frame.capture != CaptureRecord{} || frame.target != ColorTarget::srgb ||
-         std::ranges::any_of(frame.draws, [](const Draw& draw) {
+         frame.background_alpha != Frame{}.background_alpha || std::ranges::any_of(frame.draws, [](const Draw& draw) {
            return draw.material.has_value() || draw.state != DrawState{} || draw.program.has_value();
          });
 }

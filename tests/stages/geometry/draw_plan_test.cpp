@@ -403,4 +403,52 @@ TEST(DrawPlan, DrawsStayWithinTheViewportAndTheScissor) {
   }
 }
 
+// ---- The API's order ----
+
+TEST(DrawPlan, InTheApisOrderDepthsAreWindowDepths) {
+  Draws draws;
+  DrawState& state = draws.add(Compare::greater).state;
+  state.depth.near = 0.25f, state.depth.far = 0.75f;
+  state.depth.bias = {.constant = 0.125f, .slope = 2, .clamp = 0.5f};
+  state.stencil = Stencil{.function = Compare::never};
+  state.color_mask = 0;
+  const DrawPlan plan = plan_draws(draws.trace, draws.frame, DrawOrder::of_api);
+  EXPECT_TRUE(plan.notes.empty());
+  ASSERT_EQ(plan.placements.size(), 1u);
+  const DrawPlacement& placement = plan.placements[0];
+  EXPECT_TRUE(placement.is_drawn);
+  // z is -1 at the near plane and 0 at the far one.
+  EXPECT_EQ(-placement.depth_scale + placement.depth_offset, 0.25 - 1);
+  EXPECT_EQ(placement.depth_offset, 0.75 - 1);
+  EXPECT_EQ(placement.window_scale, 1);
+  EXPECT_EQ(placement.window_offset, -1);
+  EXPECT_EQ(placement.bias_constant, 0.125);
+  EXPECT_EQ(placement.bias_slope, 2);
+  EXPECT_EQ(placement.bias_clamp, 0.5);
+  EXPECT_EQ(placement.layer_step, 0);
+  EXPECT_FALSE(placement.last_wins);
+}
+
+TEST(DrawPlan, WhichFramesNeedTheApisOrder) {
+  const auto needs = [](auto&& change) {
+    Draws draws;
+    draws.add();
+    Draw& draw = draws.add();
+    draws.trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
+    change(draw);
+    return needs_api_order(draws.trace, draws.frame);
+  };
+  EXPECT_FALSE(needs([](Draw&) {}));
+  EXPECT_FALSE(needs([](Draw& draw) { draw.state.depth.function = Compare::less_equal; }));
+  EXPECT_FALSE(needs([](Draw& draw) { draw.material = 0; })) << "materials have no order of their own";
+  EXPECT_FALSE(needs([](Draw& draw) { draw.state.blend = Blend{}; })) << "opaque";
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.blend = Blend{}, draw.material = 0; }));
+  EXPECT_FALSE(needs([](Draw& draw) {
+    draw.state.blend = Blend{{BlendFactor::one, BlendFactor::zero}, {}, {}}, draw.material = 0;
+  }));
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.stencil = Stencil{.function = Compare::equal}; }));
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.depth.function = Compare::not_equal; }));
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.color_mask = kRedChannel; }));
+}
+
 }  // namespace beampipe::draw_plan_test

@@ -416,6 +416,28 @@ OpStore %iout %r
   EXPECT_EQ(shader.integer(1, 4), 1u);
 }
 
+// A loop that only moves values around: 100 of them, which the last one enters at the front.
+TEST(SpirvFlow, WhatLoopsMoveAroundIsBoundedToo) {
+  constexpr int kValues = 100;
+  std::string body = "%first = OpCompositeExtract %uint %vi 0\nOpBranch %header\n%header = OpLabel\n";
+  for (int i = 0; i < kValues; ++i)
+    body +=
+        "%x" + std::to_string(i) + " = OpPhi %uint %first %entry %x" + std::to_string((i + 1) % kValues) + " %again\n";
+  body += R"(
+%goes_on = OpINotEqual %bool %x0 %u1
+OpLoopMerge %after %again None
+OpBranchConditional %goes_on %again %after
+%again = OpLabel
+OpBranch %header
+%after = OpLabel
+%r = OpCompositeConstruct %u4 %x0 %x1 %x2 %x3
+OpStore %iout %r
+)";
+  TestShader shader(ShaderParts{.body = body});
+  EXPECT_FALSE(shader.run(1));
+  EXPECT_LE(shader.counts.instructions, ShaderExecutor::kMostSteps / kValues);  // one comparison each time
+}
+
 TEST(SpirvFlow, DemotedInvocationsGoOnAsHelpers) {
   TestShader shader(ShaderParts{.body = R"(
 %x = OpCompositeExtract %uint %vi 0

@@ -9,11 +9,13 @@ struct Asked {
   ImageRequest request;
   std::array<std::array<LaneRow, 4>, 4> rows;  // coordinates, dx, dy, offset
   LaneRow lod, reference;
+  std::uint64_t askers = 0;  // lanes
 };
 class Echo : public ImageReader {
  public:
   void read(const ImageRequest& request, const std::array<LaneRow*, 4>& texel) override {
     Asked one{request, {}, {}, {}};
+    for (std::size_t lane = 0; lane < request.lanes; ++lane) one.askers |= std::uint64_t{request.asks(lane)} << lane;
     for (std::size_t i = 0; i < 4; ++i) {
       if (request.coordinates[i]) one.rows[0][i] = *request.coordinates[i];
       if (i == 3) continue;
@@ -111,6 +113,57 @@ OpStore %out %r
   }
   EXPECT_EQ(shader.counts.texture_requests, kShaderLanes);
   EXPECT_EQ(shader.counts.ops.total(), 0u);
+}
+
+constexpr std::uint64_t kFirsts = 0x1111111111111111;  // lanes: the first of each group
+
+// The first image says where the second is read, and so how its place differs between neighbours. What it returns
+// itself only matters to lanes that are kept.
+TEST(SpirvImages, HelpersReadWhatDifferencesAreMadeFrom) {
+  ImageShader shader(R"(
+%i_ = OpLoad %sampled2 %texture
+%uv = OpVectorShuffle %v2 %va %va 0 1
+%place = OpImageSampleImplicitLod %v4 %i_ %uv
+%there = OpVectorShuffle %v2 %place %place 1 0
+%r = OpImageSampleImplicitLod %v4 %i_ %there
+OpStore %out %r
+)");
+  set_quads(shader);
+  shader.executor.run(shader.resources, kShaderLanes, ~std::uint64_t{0}, ~kFirsts, shader.counts);
+  ASSERT_EQ(shader.echo.asked.size(), 2u);
+  EXPECT_EQ(shader.echo.asked[0].askers, ~std::uint64_t{0});
+  EXPECT_EQ(shader.echo.asked[1].askers, kFirsts);
+  for (std::uint32_t lane = 0; lane < kShaderLanes; lane += 4) {
+    EXPECT_EQ(shader.echo.asked[1].rows[1][1].number(lane), 1) << "the differences of x + 3 y";
+    EXPECT_EQ(shader.echo.asked[1].rows[2][1].number(lane), 3);
+    EXPECT_EQ(shader.number(0, lane), shader.input(0, 1)->number(lane));
+  }
+  EXPECT_EQ(shader.counts.texture_requests, 2 * kShaderLanes) << "hardware reads them all";
+}
+
+// Where lanes go decides what they read next.
+TEST(SpirvImages, HelpersReadWhatDecidesTheirWay) {
+  ImageShader shader(R"(
+%i_ = OpLoad %sampled2 %texture
+%uv = OpVectorShuffle %v2 %va %va 0 1
+%vu = OpVectorShuffle %v2 %va %va 1 0
+%texel = OpImageSampleImplicitLod %v4 %i_ %uv
+%red = OpCompositeExtract %float %texel 0
+%is_low = OpFOrdLessThan %bool %red %f1
+OpSelectionMerge %end None
+OpBranchConditional %is_low %low %end
+%low = OpLabel
+OpBranch %end
+%end = OpLabel
+%where = OpPhi %v2 %uv %entry %vu %low
+%r = OpImageSampleImplicitLod %v4 %i_ %where
+OpStore %out %r
+)");
+  set_quads(shader);
+  shader.executor.run(shader.resources, kShaderLanes, ~std::uint64_t{0}, ~kFirsts, shader.counts);
+  ASSERT_EQ(shader.echo.asked.size(), 2u);
+  EXPECT_EQ(shader.echo.asked[0].askers, ~std::uint64_t{0});
+  EXPECT_EQ(shader.echo.asked[1].askers, kFirsts);
 }
 
 TEST(SpirvImages, ProjectionsDivide) {
@@ -248,6 +301,59 @@ OpStore %out %r
   expect(1, 900, 990, 900, 990), expect(3, 900, 990, 900, 990);
   run(0x1);
   expect(0, 0, 0, 0, 0);
+}
+
+// Texels that become 16-bit floats are rounded towards zero.
+TEST(SpirvImages, HalvesOfTexels) {
+  ImageShader shader(R"(
+%i_ = OpLoad %image_array %shadow
+%s_ = OpLoad %sampler %compare
+%both = OpSampledImage %sampled_array %i_ %s_
+%uvl = OpVectorShuffle %v3 %va %va 0 1 2
+%texel = OpImageSampleExplicitLod %v4 %both %uvl Lod %f0
+%bits = OpBitcast %u4 %texel
+%again = OpBitcast %v4 %bits
+%h = OpFConvert %h4 %again
+%r = OpFConvert %v4 %h
+OpStore %out %r
+)");
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNumbers[][2] = {{1 + 0x1p-11f + 0x1p-12f, 1},
+                                   {-1 - 0x1p-11f - 0x1p-12f, -1},
+                                   {1 + 0x1p-10f, 1 + 0x1p-10f},
+                                   {70000, 65504},
+                                   {-65519, -65504},
+                                   {kInfinity, kInfinity},
+                                   {0x1.fp-25f, 0},
+                                   {0x1.cp-24f, 0x1p-24f},
+                                   {-0x1.ffcp-15f, -0x1.ff8p-15f},
+                                   {0x1.fffp-15f, 0x1.ff8p-15f}};
+  for (std::size_t lane = 0; lane < std::size(kNumbers); ++lane) shader.set(0, 0, lane, kNumbers[lane][0]);
+  shader.run();
+  for (std::size_t lane = 0; lane < std::size(kNumbers); ++lane)
+    EXPECT_EQ(shader.number(0, lane), kNumbers[lane][1]) << lane;
+}
+
+TEST(SpirvImages, WidthsAreSumsOfDifferences) {
+  TestShader shader(ShaderParts{.body = R"(
+%x = OpCompositeExtract %float %va 0
+%any = OpFwidth %float %x
+%fine = OpFwidthFine %float %x
+%coarse = OpFwidthCoarse %float %x
+%r = OpCompositeConstruct %v4 %any %fine %coarse %f0
+OpStore %out %r
+)"});
+  EXPECT_TRUE(shader.program.takes_differences);
+  // Values of a quad: 1 -10 / 100 1000.
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane)
+    shader.set(0, 0, lane, std::array{1.0f, -10.0f, 100.0f, 1000.0f}[lane % 4]);
+  shader.run(4);
+  constexpr float kFine[] = {11 + 99, 11 + 1010, 900 + 99, 900 + 1010};
+  for (std::uint32_t lane = 0; lane < 4; ++lane) {
+    EXPECT_EQ(shader.number(0, lane), kFine[lane]);
+    EXPECT_EQ(shader.number(1, lane), kFine[lane]);
+    EXPECT_EQ(shader.number(2, lane), 11 + 99);
+  }
 }
 
 }  // namespace

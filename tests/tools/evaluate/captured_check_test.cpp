@@ -57,6 +57,7 @@ TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
 
 TEST(CapturedCheck, ReversedDepthIsWindowDepthToo) {
   Trace trace = empty_trace();
+  trace.frames[0].capture.pictures.clear_depth = 0;
   add_quad(trace, {0, 0}, {8, 8}, 0.25f, {.function = Compare::greater});
   add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.function = Compare::greater});
   const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
@@ -81,11 +82,10 @@ TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.cleared_before = true});
   const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   EXPECT_EQ(found.draw[0], 1u);
-  EXPECT_NEAR(found.depth[0], 0.75, 1e-6);  // a group in front, or behind, keeps fewer bits
+  EXPECT_NEAR(found.depth[0], 0.75, 1e-12);
   EXPECT_EQ(found.draw[kSize - 1], kNoDraw);
 }
 
-// The pipelines leave out depth without colour, and blending that they do not know.
 TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   Trace trace = empty_trace();
   add_quad(trace, {0, 0}, {4, 8}, 0.5f);
@@ -95,8 +95,7 @@ TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   draws[1].state.blend = Blend{{BlendFactor::source_alpha, BlendFactor::one}};
   trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
   draws[1].material = 0;
-  EXPECT_EQ(sampled_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
-  const SampledDepths found = sampled_depths(trace, without_blending(trace.frames[0]), nullptr);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], nullptr);
   EXPECT_EQ(found.draw[0], 0u);
   EXPECT_NEAR(found.depth[0], 0.5, 1e-12);
   EXPECT_EQ(found.draw[kSize - 1], 1u);
@@ -142,7 +141,7 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
 TEST(CapturedCheck, AgreesWithTheCapturedSample) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/captured_quads.json");
   const TextureSet textures(trace);
-  const SampledDepths depths = sampled_depths(trace, without_blending(trace.frames[0]), &textures);
+  const SampledDepths depths = sampled_depths(trace, trace.frames[0], &textures);
   const CapturedCheck found = check_captured(trace.frames[0], depths);
   EXPECT_GT(found.there, 3000u);
   EXPECT_GE(found.coverage(), 0.999);
@@ -169,8 +168,11 @@ TEST(DrawNotes, OfSeveralFramesAreAddedUp) {
   add_quad(trace, {0, 0}, {8, 8}, 0.5f);
   trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::equal};
   trace.frames.push_back(trace.frames[0]);
-  EXPECT_EQ(notes_of(trace, {0, 1}, ProgramSet(trace)), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));
-  EXPECT_EQ(notes_of(trace, {1}, ProgramSet(trace)), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
+  EXPECT_EQ(notes_of(trace, {0, 1}, ProgramSet(trace), "casav"),
+            (std::vector<DrawNote>{{"stencil test (casav)", true, 2, 4}}));
+  EXPECT_EQ(notes_of(trace, {1}, ProgramSet(trace), "casav"),
+            (std::vector<DrawNote>{{"stencil test (casav)", true, 1, 2}}));
+  EXPECT_TRUE(notes_of(trace, {0, 1}, ProgramSet(trace), "").empty());
 }
 
 }  // namespace beampipe::captured_check_test
