@@ -33,8 +33,9 @@ std::size_t first_position(const WideMask& positions) {
 
 bool is_same_state(const Region& a, const Region& b) {
   if (a.triangle != b.triangle || a.stencil != b.stencil) return false;
-  if (a.color == b.color) return true;
-  return a.origin == b.origin && a.touches == b.touches && a.touches > 0 && a.touches < kMostTouches;
+  bool is_same = true;
+  for (int c = 0; c < 4; ++c) is_same &= std::abs(a.color[c] - b.color[c]) <= kSameColor;
+  return is_same;
 }
 
 // Region b becomes part of a, which keeps its depth and stencil value.
@@ -42,6 +43,7 @@ void join(Region& a, const Region& b) {
   const float share = share_of(static_cast<float>(b.area), static_cast<float>(a.area + b.area));
   for (int c = 0; c < 4 && a.color != b.color; ++c) a.color[c] = stored(mixture(a.color[c], b.color[c], share));
   a.drawn = static_cast<std::uint8_t>(mixture(static_cast<float>(a.drawn), static_cast<float>(b.drawn), share) + 0.5f);
+  a.is_touched = a.is_touched && b.is_touched;
   a.positions = a.positions | b.positions;
   a.area = static_cast<std::uint16_t>(a.area + b.area);
 }
@@ -132,8 +134,7 @@ class RegionComposer {
     if (pixel_->draw == draw) return;
     add_specks(*pixel_);
     pixel_->draw = draw;
-    for (std::size_t k = 0; k < pixel_->regions.size(); ++k)
-      pixel_->regions[k].origin = static_cast<std::uint8_t>(k), pixel_->regions[k].touches = 0;
+    for (Region& region : pixel_->regions) region.is_touched = false;
   }
 
   // Positions are taken apart where it matters which region has them.
@@ -339,7 +340,7 @@ class RegionComposer {
     work.by_state += of_blend_;
     part.color = blended(bin_.rules, *rule_, color, part.color);
     part.drawn = kWhollyDrawn;
-    part.touches = std::min<std::uint8_t>(part.touches + 1u, kMostTouches);
+    part.is_touched = true;
   }
 
   // Adds a region to those of its state, if there are any.
@@ -411,7 +412,7 @@ class RegionComposer {
   }
 
   static bool is_smaller_target(const Region& a, const Region& b) {
-    return std::pair(a.touches == 0, a.area) < std::pair(b.touches == 0, b.area);
+    return std::pair(!a.is_touched, a.area) < std::pair(!b.is_touched, b.area);
   }
 
   // The draw has left the pixel.
@@ -421,7 +422,7 @@ class RegionComposer {
     pixel.specks = {};
     Region& region = *std::ranges::max_element(pixel.regions, is_smaller_target);
     work.comparisons += pixel.regions.size();
-    if (region.touches > 0 || region.area == 0) return;
+    if (region.is_touched || region.area == 0) return;
     const RopRule& rule = bin_.rules.of(bin_.triangles, specks.triangle);
     work.by_state += region_costs::blend(rule);
     ++work.mixes;
@@ -476,8 +477,8 @@ void charge(const RegionsWork& work, std::size_t words, StageCounters& counters)
   static const UnitCost of_plane = plane_cost(), of_contest = region_costs::contest(),
                         of_position = region_costs::contest_at_position(), of_part = region_costs::part(),
                         of_pair = region_costs::pair(), of_mix = region_costs::mix(),
-                        of_addition = region_costs::addition(), of_place = speck_votes_cost(0);
-  constexpr OperationCounts kOfComparison{.add = 4};  // triangle, stencil value, colour, origin
+                        of_addition = region_costs::addition(), of_speck = speck_votes_cost(0);
+  constexpr OperationCounts kOfComparison{.add = 2 + 4 + 4, .bit = 4};  // triangle, stencil value, four channels
   const RegionUnitCosts& of_masks = costs[std::bit_width(words) - 1];
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
     counters.ops += of_masks.splits[planes] * work.splits[planes];
@@ -493,7 +494,7 @@ void charge(const RegionsWork& work, std::size_t words, StageCounters& counters)
   counters.ops += kOfComparison * work.comparisons;
   counters.ops += of_pair * work.pairs_compared;
   counters.ops += of_mix * work.mixes;
-  counters.ops += of_place * work.specks;
+  counters.ops += of_speck * work.specks;
   counters.ops += of_addition * work.finished;
   counters.ops += work.by_state;
   counters.items_in += work.fragments;

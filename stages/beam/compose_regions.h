@@ -4,8 +4,8 @@
 // A fragment cuts the regions that it meets in two: it changes what lies inside, and what lies outside stays. Inside,
 // stencil is tested for each region at once, and depth too, except where planes cross: there it is tested at each
 // position. What passes is blended with the region's colour, once for all of it. Regions become one again where they
-// have the same state, and where they were one before the draw and it has changed both equally often, which is what
-// triangles of a mesh do that lie beside each other: so a mesh has no seams, and a pixel in it stays one region.
+// have the same depth and stencil value, and nearly the same colour. So a mesh has no seams, and a pixel in it that it
+// is blended with is one region, or few.
 //
 // Areas are exact where one edge cuts the pixel. The fragment's analytic area is shared by the regions that it meets:
 // what it covers completely goes first, and the others share the rest, as their positions are inside. The areas of a

@@ -52,6 +52,11 @@ Float part_inside(Float area, Float inside, Float count) {
 
 // ---- Merges ----
 
+// Regions whose colours differ by no more, in each channel, are one if their depths and stencil values are the same. On
+// a translucent mesh (jellyfish of glmark2) 1/128, 1/64 and 1/32 are as accurate as 2400, 2250 and 2130 samples, with
+// 27.5, 26.2 and 24.7 bytes of records per pixel.
+inline constexpr float kSameColor = 1.0f / 64;
+
 // A channel of two regions that become one. `share`: the part of the result that is the other.
 template <class Float>
 Float mixture(Float one, Float other, Float share) {

@@ -23,11 +23,10 @@ namespace beampipe {
 inline constexpr std::size_t kMostRegions = 16;
 
 // A region: RGBA as fp16, and the triangle that gave it its depth, area, stencil value, the part of it that was drawn,
-// its origin and how often the draw at hand has changed it.
-inline constexpr std::uint32_t kTouchBits = 4, kOriginBits = 4, kDrawnBits = 8, kStencilBits = 8;
+// and whether the draw at hand has changed it.
+inline constexpr std::uint32_t kDrawnBits = 8, kStencilBits = 8;
 inline constexpr std::uint32_t kRegionBytes = 16;
-static_assert(4 * 16 + kTriangleBits + kAreaBits + kStencilBits + kDrawnBits + kOriginBits + kTouchBits <=
-              8 * kRegionBytes);
+static_assert(4 * 16 + kTriangleBits + kAreaBits + kStencilBits + kDrawnBits + 1 <= 8 * kRegionBytes);
 static_assert(kRegionBytes == kChunkBytes);
 
 // A pixel's word: the record's first chunk, its regions (0: nothing has touched it), and the draw that touched it last.
@@ -47,7 +46,7 @@ static_assert(32 * 32 * kMostRegionChunks <= 1u << kChunkNumberBits);
 inline constexpr std::uint32_t kWholeArea = (1u << kAreaBits) - 1;  // of a pixel
 inline constexpr std::uint32_t kNobodysDepth = ~0u;                 // that of the last clear
 inline constexpr std::uint32_t kNoDraw = ~0u;
-inline constexpr std::uint8_t kWhollyDrawn = (1u << kDrawnBits) - 1, kMostTouches = (1u << kTouchBits) - 1;
+inline constexpr std::uint8_t kWhollyDrawn = (1u << kDrawnBits) - 1;
 
 struct Region {
   WideMask positions;       // one at least
@@ -56,9 +55,8 @@ struct Region {
   std::uint32_t triangle = kNobodysDepth;
   std::uint16_t area = kWholeArea;  // the areas of a pixel's regions add up to kWholeArea
   std::uint8_t stencil = 0;
-  std::uint8_t drawn = 0;    // the part whose colour a draw has written
-  std::uint8_t origin = 0;   // regions of one origin were one region before the draw that touched the pixel last,
-  std::uint8_t touches = 0;  // and so many of its triangles, up to kMostTouches, have changed the colour since
+  std::uint8_t drawn = 0;   // the part whose colour a draw has written
+  bool is_touched = false;  // by the draw that touched the pixel last: it has changed the colour
 };
 
 // Of the draw that touched the pixel last, those that passed its tests.
