@@ -35,10 +35,7 @@ frame() {  # NAME PACKAGE OPTIONS... -- COMMAND...
     return 0
   fi
   echo "$name:"
-  # Some programs crash now and then as RenderDoc is loaded into them.
-  for _ in 1 2 3; do
-    "$program" capture "${options[@]}" -o "$folder/$name.json" -- "$@" && return 0
-  done
+  "$program" capture "${options[@]}" -o "$folder/$name.json" -- "$@" && return 0
   echo "$name: not captured"
 }
 

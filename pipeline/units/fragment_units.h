@@ -130,12 +130,16 @@ class SampleShadeUnit {
   }
 
   void operator()(const std::vector<SampleFragment>& fragments) {
-    shade(bin_.shader(), fragments, color_bytes_, stage_.timed());
     if (TexelRequests* const texels = bin_.texels())
       SamplePlaces(bin_, *sampling_, at_).add_quad_texels(fragments, *texels);
-    bin_.charge_texels(stage_);
-    in_order_.read(fragments, stage_.counters);
-    if (centroids_) count_centroids(bin_.triangles(), fragments, bin_.tile, *sampling_, stage_.timed(), *centroids_);
+    charge(fragments);
+  }
+
+  // The same, for colours that are wanted now: RGBA.
+  std::vector<glm::vec4> colors(const std::vector<SampleFragment>& fragments) {
+    std::vector<glm::vec4> found = SamplePlaces(bin_, *sampling_, at_).shade_quads(fragments, bin_.texels());
+    charge(fragments);
+    return found;
   }
 
   // Attributes are read again from the start.
@@ -146,6 +150,13 @@ class SampleShadeUnit {
   }
 
  private:
+  void charge(const std::vector<SampleFragment>& fragments) {
+    shade(bin_.shader(), fragments, color_bytes_, stage_.timed());
+    bin_.charge_texels(stage_);
+    in_order_.read(fragments, stage_.counters);
+    if (centroids_) count_centroids(bin_.triangles(), fragments, bin_.tile, *sampling_, stage_.timed(), *centroids_);
+  }
+
   Bin& bin_;
   BinStage stage_;
   AttributesInOrder in_order_;

@@ -4,7 +4,6 @@
 
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
-#include "pipeline/units/sample_places.h"
 #include "stages/samples/ordered_blend.h"
 #include "stages/samples/ordered_test.h"
 
@@ -39,7 +38,6 @@ void OrderedUnit::draw(ShadeAt at, AlphaCoverage alpha) {
   const RopRules& rules = *bin_.context.rop;
   const SampledTriangles in{bin_.triangles(), bin_.tile, sampling_};
   const BinStage testing = bin_.stage(StageId::depth_test), blending = bin_.stage(StageId::blend);
-  const SamplePlaces places(bin_, sampling_, at);
   SampleShadeUnit shade(bin_, sampling_, at, surface_.color_bytes);
   shade.counts_centroids();
   SampleRasterUnit raster(bin_, SampleRasterUnit::Translucent::drawn, alpha);
@@ -49,15 +47,7 @@ void OrderedUnit::draw(ShadeAt at, AlphaCoverage alpha) {
     count_by_pixel(fragments, bin_.tile, sampling_.grid, bin_.pixel_counter("fragments"));
     ordered_test(in, rules, testing.timed(), surface_, fragments, accesses);
     memory_.test_in_order(accesses, testing.counters);
-    shade(fragments);
-    std::vector<Invocation> invocations;
-    const std::vector<glm::vec2> at_places = places.of(fragments);
-    for (std::size_t i = 0; i < fragments.size(); ++i)
-      invocations.push_back({fragments[i].triangle,
-                             {sampling_.grid.pixel_x(fragments[i].x), sampling_.grid.pixel_y(fragments[i].y),
-                              at_places[i].x, at_places[i].y},
-                             sampling_.grid.shading_width()});
-    const std::vector<glm::vec4> colors = bin_.context.shader.colors_and_alphas(invocations);
+    const std::vector<glm::vec4> colors = shade.colors(fragments);
     ordered_blend(in, rules, {fragments, colors}, blending.timed(), surface_, accesses);
     memory_.blend_in_order(accesses, blending.counters);
   });

@@ -31,19 +31,12 @@ std::vector<glm::vec2> SamplePlaces::of(const std::vector<SampleFragment>& fragm
   return places;
 }
 
-void SamplePlaces::add_texels(const SampleFragment& fragment, TexelRequests& texels,
-                              std::vector<Invocation>& of_programs) const {
-  const SurfaceShader& shader = bin_.context.shader;
-  if (shader.is_flat(fragment.triangle)) return;
-  const glm::vec2 place = of(fragment);
+Invocation SamplePlaces::invocation(const SampleFragment& fragment) const {
+  const bool is_flat = bin_.context.shader.is_flat(fragment.triangle);
+  const glm::vec2 place = is_flat ? glm::vec2(0.5f) : of(fragment);
   const CellGrid& grid = sampling_.grid;
-  const ShadingPlace there{grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y};
-  const float width = sampling_.grid.shading_width();
-  if (shader.is_program(fragment.triangle)) {
-    of_programs.push_back({fragment.triangle, there, width});
-  } else {
-    shader.add_texels(fragment.triangle, there, width, texels);
-  }
+  return {
+      fragment.triangle, {grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y}, grid.shading_width()};
 }
 
 void SamplePlaces::add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const {
@@ -53,24 +46,69 @@ void SamplePlaces::add_texels(std::uint32_t triangle, std::size_t cell, TexelReq
   texels.end_request();
 }
 
-void SamplePlaces::add_quad_texels(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const {
+SamplePlaces::OfPrograms SamplePlaces::add_quad_texels_of_materials(const std::vector<SampleFragment>& fragments,
+                                                                    TexelRequests& texels) const {
+  const SurfaceShader& shader = bin_.context.shader;
   const SamplePlaces helpers(bin_, sampling_, at_ == ShadeAt::centroid ? ShadeAt::centre : at_);
-  std::vector<Invocation> of_programs;
+  OfPrograms found;
+  const auto add = [&](const SamplePlaces& places, const SampleFragment& fragment, std::vector<Invocation>& programs) {
+    if (shader.is_flat(fragment.triangle)) return;
+    const Invocation there = places.invocation(fragment);
+    if (shader.is_program(fragment.triangle)) {
+      programs.push_back(there);
+    } else {
+      shader.add_texels(there.triangle, there.place, there.footprint, texels);
+    }
+  };
   for (std::size_t first = 0, end = 0; first < fragments.size(); first = end) {
     std::uint32_t covered = 0;  // bit for each cell of the quad
     for (; end < fragments.size() && fragments[end].quad == fragments[first].quad; ++end) {
       covered |= 1u << ((fragments[end].y & 1) * 2 + (fragments[end].x & 1));
-      add_texels(fragments[end], texels, of_programs);
+      add(*this, fragments[end], found.fragments);
     }
     SampleFragment helper = fragments[first];
     for (std::int32_t cell = 0; cell < 4; ++cell) {
       if (covered >> cell & 1) continue;
       helper.x = (fragments[first].x & ~1) + cell % 2, helper.y = (fragments[first].y & ~1) + cell / 2;
-      helpers.add_texels(helper, texels, of_programs);
+      add(helpers, helper, found.helpers);
     }
     texels.end_request();
   }
-  bin_.context.shader.add_program_texels(of_programs, texels);
+  return found;
+}
+
+void SamplePlaces::add_quad_texels(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const {
+  OfPrograms programs = add_quad_texels_of_materials(fragments, texels);
+  programs.fragments.insert(programs.fragments.end(), programs.helpers.begin(), programs.helpers.end());
+  bin_.context.shader.add_program_texels(programs.fragments, texels);
+}
+
+std::vector<glm::vec4> SamplePlaces::shade_quads(const std::vector<SampleFragment>& fragments,
+                                                 TexelRequests* texels) const {
+  const SurfaceShader& shader = bin_.context.shader;
+  struct Part {
+    std::vector<Invocation> invocations;
+    std::vector<std::size_t> numbers;  // of their fragments
+  };
+  Part programs, others;
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const std::uint32_t triangle = fragments[i].triangle;
+    Part& part = !shader.is_flat(triangle) && shader.is_program(triangle) ? programs : others;
+    part.invocations.push_back(invocation(fragments[i]));
+    part.numbers.push_back(i);
+  }
+  if (texels) {  // programs run once for their colours and their texels, and helpers come after what is wanted
+    const std::vector<Invocation> helpers = add_quad_texels_of_materials(fragments, *texels).helpers;
+    programs.invocations.insert(programs.invocations.end(), helpers.begin(), helpers.end());
+  }
+  std::vector<glm::vec4> colors(fragments.size());
+  const auto shade = [&](const Part& part, TexelRequests* of_part) {
+    const std::vector<glm::vec4> found = shader.colors_and_alphas(part.invocations, of_part);
+    for (std::size_t k = 0; k < part.numbers.size(); ++k) colors[part.numbers[k]] = found[k];
+  };
+  shade(programs, texels);
+  shade(others, nullptr);
+  return colors;
 }
 
 }  // namespace beampipe

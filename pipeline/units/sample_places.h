@@ -29,12 +29,20 @@ class SamplePlaces {
   // the centres of their cells or, with ShadeAt::sample, at the samples there.
   void add_quad_texels(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const;
 
+  // The colours of the fragments, RGBA, which are shaded in 2x2 quads. `texels`: as above; null: they are not noted.
+  std::vector<glm::vec4> shade_quads(const std::vector<SampleFragment>& fragments, TexelRequests* texels) const;
+
   // Adds the texels that one invocation reads, as a request of its own.
   void add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const;
 
  private:
-  // Those of programs are shaded together.
-  void add_texels(const SampleFragment& fragment, TexelRequests& texels, std::vector<Invocation>& of_programs) const;
+  Invocation invocation(const SampleFragment& fragment) const;
+  // Adds the texels of materials, and leaves those of programs, which are shaded together: fragments, in their order,
+  // and helpers.
+  struct OfPrograms {
+    std::vector<Invocation> fragments, helpers;
+  };
+  OfPrograms add_quad_texels_of_materials(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const;
 
   const Bin& bin_;
   const Sampling& sampling_;

@@ -16,6 +16,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
                 os.path.join(os.path.dirname(__file__), "../../tools/capture"))
 sys.dont_write_bytecode = True
+import attempts
 import clears
 import frame
 import geometry
@@ -29,6 +30,29 @@ import srgb
 import state
 import trace_file
 import wide
+
+
+class Attempts(unittest.TestCase):
+    def outcome(self, *outcomes):
+        """Of attempts that end so: the last one that is made, and how many there are."""
+        left = list(outcomes)
+
+        def attempt():
+            end = left.pop(0)
+            if isinstance(end, Exception):
+                raise end
+            return end
+        try:
+            return attempts.first_success(attempt), len(outcomes) - len(left)
+        except attempts.Failure as error:
+            return error, len(outcomes) - len(left)
+
+    def test_early_crashes_are_tried_again_twice(self):
+        crash, other = attempts.EarlyCrash("signal 11"), attempts.Failure("exit code 1")
+        self.assertEqual(self.outcome("frame"), ("frame", 1))
+        self.assertEqual(self.outcome(crash, crash, "frame"), ("frame", 3))
+        self.assertEqual(self.outcome(crash, crash, crash, "frame"), (crash, 3))
+        self.assertEqual(self.outcome(crash, other, "frame"), (other, 2))
 
 
 class Errors(unittest.TestCase):

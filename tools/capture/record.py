@@ -9,6 +9,7 @@ import time
 
 import renderdoc as rd
 
+from attempts import EarlyCrash, first_success
 from failure import Failure
 from redraw import ask_for_redraw
 
@@ -106,7 +107,8 @@ class _Session:
         if done is not None:
             how = f"was ended by signal {-done}" if done < 0 else f"ended with exit code {done}"
             when = "before the frame that was asked for" if self.presents else "without showing a picture"
-            raise Failure(f"{self.name} {how} {when}{self.output.last()}")
+            kind = EarlyCrash if done < 0 and not self.presents else Failure
+            raise kind(f"{self.name} {how} {when}{self.output.last()}")
         if time.monotonic() > self.deadline:
             what = "frame captured" if self.presents else "picture shown"
             raise Failure(f"{self.name}: no {what} within the time limit (see --timeout){self.output.last()}")
@@ -164,8 +166,13 @@ class Wishes:
 
 def record(processes, words, display, folder, wishes, progress, timeout):
     """Captures frames of the program `words`."""
-    session = _Session(processes, words, display, folder, wishes, progress, time.monotonic() + timeout)
-    try:
-        return session.run()
-    finally:
-        processes.end(session.program)
+    deadline = time.monotonic() + timeout
+
+    def attempt():
+        session = _Session(processes, words, display, folder, wishes, progress, deadline)
+        try:
+            return session.run()
+        finally:
+            processes.end(session.program)
+
+    return first_success(attempt)
