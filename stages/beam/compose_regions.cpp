@@ -160,18 +160,29 @@ class RegionComposer {
   // The pixel's regions have changed.
   void store(std::uint32_t triangle) {
     const std::size_t count = pixel_->regions.size();
-    const std::uint32_t before = pixel_->chunks.count,
-                        after = region_chunks(count, pixel_->specks.area > 0, pixels_.words);
-    if (after != before) {
-      pixels_.pool.resize(pixel_->chunks, after);
-      work.bytes_written += pixels_.pool.link_bytes();
-      if (after > before) work.bytes_read += (after - before) * pixels_.pool.link_bytes();
-    }
+    const std::uint32_t after = region_chunks(count, pixel_->specks.area > 0, pixels_.words);
+    if (after != pixel_->chunks.count) resize(after);
     float& most = maps_.record_bytes[index_];
     most = std::max(most, static_cast<float>(after * (kChunkBytes + pixels_.pool.link_bytes())));
     work.bytes_written += kPixelWordBytes;
     ++work.changing;
     visit(triangle, true);
+  }
+
+  // Links of chunks that are taken are read, and the last one's is written. What chunks in memory held that are given
+  // back may still be needed: then it moves.
+  void resize(std::uint32_t count) {
+    ChunkPool::Chunks& chunks = pixel_->chunks;
+    const ChunkPool::Chunks before = chunks;
+    pixels_.pool.resize(chunks, count);
+    if (before.count > 0) work.bytes_written += pixels_.pool.link_bytes();
+    if (count > before.count) work.bytes_read += (count - before.count) * pixels_.pool.link_bytes();
+    if (chunks.in_memory > before.in_memory) count_spills({.reads = chunks.in_memory - before.in_memory + 0u});
+    if (chunks.in_memory >= before.in_memory) return;
+    const std::uint32_t moved = std::min<std::uint32_t>(before.in_memory, count) - chunks.in_memory;
+    work.bytes_read += moved * kChunkBytes;
+    work.bytes_written += moved * kChunkBytes;
+    count_spills({.reads = moved, .writes = 1});
   }
 
   // ---- Tests ----
