@@ -70,7 +70,8 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules, DrawO
   if (triangles.order == DrawOrder::of_api) rop.emplace(trace, frame, background);
   if (rules.takes_positions && has_alpha()) prepare_alpha_mask();
   has_textures_ = !shader.is_flat() && !(job.trace.images.empty() && job.trace.program_images.empty());
-  if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);
+  if (has_textures_ && run.memory.modelled)
+    texture_layout.emplace(run.textures ? *run.textures : *own_textures, job.trace.program_images);
 }
 
 void FrameContext::prepare_alpha_mask() {

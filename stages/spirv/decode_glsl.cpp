@@ -75,21 +75,19 @@ std::optional<Code> elementwise(std::uint32_t number) {
     case GLSLstd450InverseSqrt:
       return Code::inverse_sqrt;
     case GLSLstd450FMin:
+    case GLSLstd450NMin:
       return Code::f_min;
     case GLSLstd450UMin:
       return Code::u_min;
     case GLSLstd450SMin:
       return Code::s_min;
     case GLSLstd450FMax:
+    case GLSLstd450NMax:
       return Code::f_max;
     case GLSLstd450UMax:
       return Code::u_max;
     case GLSLstd450SMax:
       return Code::s_max;
-    case GLSLstd450NMin:
-      return Code::n_min;
-    case GLSLstd450NMax:
-      return Code::n_max;
     case GLSLstd450Ldexp:
       return Code::ldexp;
     case GLSLstd450FindILsb:
@@ -225,11 +223,7 @@ Parts Decoder::glsl_of_vectors(const Instruction& instruction) {
     case GLSLstd450FClamp:
     case GLSLstd450NClamp: {
       const Parts least = operand(1), most = operand(2);
-      const bool passes_numbers = opcode == GLSLstd450NClamp;
-      return each(x.size(), [&](std::size_t i) {
-        return op(passes_numbers ? Code::n_min : Code::f_min,
-                  op(passes_numbers ? Code::n_max : Code::f_max, x[i], least[i]), most[i]);
-      });
+      return each(x.size(), [&](std::size_t i) { return clamp(x[i], least[i], most[i]); });
     }
     case GLSLstd450UClamp:
     case GLSLstd450SClamp: {

@@ -58,8 +58,6 @@ Row Decoder::float_op(std::uint32_t width, LaneCode code, Row a, Row b) {
     case LaneCode::f_sign:
     case LaneCode::f_min:
     case LaneCode::f_max:
-    case LaneCode::n_min:
-    case LaneCode::n_max:
     case LaneCode::floor:
     case LaneCode::ceil:
     case LaneCode::trunc:

@@ -21,8 +21,6 @@ constexpr LaneCodeInfo kInfos[] = {
     {LaneCode::f_sign, 1, {.add = 2}},
     {LaneCode::f_min, 2, kAdd},
     {LaneCode::f_max, 2, kAdd},
-    {LaneCode::n_min, 2, kAdd},
-    {LaneCode::n_max, 2, kAdd},
     {LaneCode::floor, 1, kConvert},
     {LaneCode::ceil, 1, kConvert},
     {LaneCode::trunc, 1, kConvert},

@@ -22,10 +22,8 @@ enum class LaneCode : std::uint8_t {
   f_negate,
   f_abs,
   f_sign,
-  f_min,
+  f_min,  // of a number and what is not one, the number; as f_max
   f_max,
-  n_min,
-  n_max,
   floor,
   ceil,
   trunc,

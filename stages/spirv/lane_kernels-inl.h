@@ -93,10 +93,8 @@ HWY_INLINE float f_rem(float a, float b) { return a - b * std::trunc(a / b); }
 HWY_INLINE U f_negate(U a) { return a ^ 0x80000000u; }
 HWY_INLINE U f_abs(U a) { return a & 0x7fffffffu; }
 HWY_INLINE float f_sign(float a) { return a > 0 ? 1.0f : a < 0 ? -1.0f : a; }
-HWY_INLINE float f_min(float a, float b) { return b < a ? b : a; }
-HWY_INLINE float f_max(float a, float b) { return a < b ? b : a; }
-HWY_INLINE float n_min(float a, float b) { return a != a || b < a ? b : a; }
-HWY_INLINE float n_max(float a, float b) { return a != a || a < b ? b : a; }
+HWY_INLINE float f_min(float a, float b) { return a != a || b < a ? b : a; }
+HWY_INLINE float f_max(float a, float b) { return a != a || a < b ? b : a; }
 HWY_INLINE float floor(float a) { return std::floor(a); }
 HWY_INLINE float ceil(float a) { return std::ceil(a); }
 HWY_INLINE float trunc(float a) { return std::trunc(a); }
@@ -373,10 +371,6 @@ inline LaneKernel kernel_of(LaneCode code) {
       return EachLane<lane::f_min>::run;
     case LaneCode::f_max:
       return EachLane<lane::f_max>::run;
-    case LaneCode::n_min:
-      return EachLane<lane::n_min>::run;
-    case LaneCode::n_max:
-      return EachLane<lane::n_max>::run;
     case LaneCode::floor:
       return EachLane<lane::floor>::run;
     case LaneCode::ceil:

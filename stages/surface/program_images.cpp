@@ -226,16 +226,15 @@ FacePlace face_place(const std::array<float, 3>& direction, const std::array<flo
 // Reads of one view through one sampler.
 class ViewReader {
  public:
-  ViewReader(const ImageSlot& slot, const ImageView& view, const ProgramSampler& sampler)
-      : slot_(slot), view_(view), image_(*view.image), sampler_(sampler) {
+  // `requests`: where texels are added; null: nowhere.
+  ViewReader(const ImageSlot& slot, const ImageView& view, const ProgramSampler& sampler, TexelRequests* requests)
+      : slot_(slot), view_(view), image_(*view.image), sampler_(sampler), requests_(requests) {
     texel_bytes_ = texel_bytes(image_.format);
     dimensions_ = slot.dim == spv::Dim1D || slot.dim == spv::DimBuffer ? 1
                   : slot.dim == spv::Dim3D                             ? 3
                                                                        : 2;  // of a cube's face
     is_linear_allowed_ = !is_integer(image_.format);
   }
-
-  std::uint64_t texels = 0;
 
   bool is_cube() const { return slot_.dim == spv::DimCube; }
   std::size_t dimensions() const { return dimensions_; }
@@ -248,13 +247,18 @@ class ViewReader {
 
   // Without a check of the place.
   Texel texel(std::uint32_t level, std::uint32_t layer, std::int64_t x, std::int64_t y, std::int64_t z) {
-    ++texels;
     const std::uint32_t l = view_.base_level + level;
     const std::uint64_t width = side_at(image_.width, l), height = side_at(image_.height, l);
     const std::uint64_t slice =
         image_.shape == ImageShape::d3 ? static_cast<std::uint64_t>(z) : std::uint64_t{view_.base_layer} + layer;
     const std::uint64_t place =
         (slice * height + static_cast<std::uint64_t>(y)) * width + static_cast<std::uint64_t>(x);
+    if (requests_)
+      requests_->read(ProgramTexelRead{.image = view_.number,
+                                       .level = l,
+                                       .slice = slice,
+                                       .x = static_cast<std::uint64_t>(x),
+                                       .y = static_cast<std::uint64_t>(y)});
     return swizzled(decoded(image_.format, image_.texels.data() + view_.level_starts[l] + place * texel_bytes_), view_);
   }
 
@@ -449,6 +453,7 @@ class ViewReader {
   const ImageView& view_;
   const ProgramImage& image_;
   const ProgramSampler& sampler_;
+  TexelRequests* requests_;
   std::uint64_t texel_bytes_ = 0;
   std::size_t dimensions_ = 2;
   bool is_linear_allowed_ = true;
@@ -585,7 +590,7 @@ BoundImages bound_images(const LaneProgram& program, const std::vector<BoundImag
       if (!each.image || each.element >= kMostElements) return;
       if (each.element >= views.size()) views.resize(each.element + 1);
       ImageView& view = views[each.element];
-      view.image = &images[*each.image];
+      view.image = &images[*each.image], view.number = *each.image;
       if (each.sampler) view.sampler = &samplers[*each.sampler];
       view.base_level = each.base_level, view.levels = each.levels.value_or(view.image->levels - each.base_level);
       view.base_layer = each.base_layer, view.layers = each.layers.value_or(view.image->layers - each.base_layer);
@@ -607,11 +612,13 @@ BoundImages bound_images(const LaneProgram& program, const std::vector<BoundImag
 }
 
 void ProgramImages::read(const ImageRequest& request, const std::array<LaneRow*, 4>& texel) {
+  constexpr std::size_t kLanesOfRequest = 4;
   static const ProgramSampler kNoSampler{.mag = Filter::nearest, .min = Filter::nearest, .mip = Filter::nearest};
   const ImageSlot& slot = program_.images[request.image];
   const std::vector<ImageView>& views = bound_.images[request.image];
   const auto element_of = [](const LaneRow* row, std::size_t lane) { return row ? row->bits[lane] : 0u; };
   for (std::size_t lane = 0; lane < request.lanes; ++lane) {
+    if (lane % kLanesOfRequest == 0) end_request(requests_);
     if (!request.asks(lane)) continue;
     std::array<std::uint32_t, 4> bits{};
     const std::uint32_t element = element_of(request.image_element, lane);
@@ -623,12 +630,12 @@ void ProgramImages::read(const ImageRequest& request, const std::array<LaneRow*,
         const std::uint32_t number = element_of(request.sampler_element, lane);
         sampler = number < samplers.size() ? samplers[number] : nullptr;
       }
-      ViewReader reader(slot, view, sampler ? *sampler : kNoSampler);
+      ViewReader reader(slot, view, sampler ? *sampler : kNoSampler, counted_ >> lane & 1 ? requests_ : nullptr);
       bits = answer({request, lane}, request, slot, reader);
-      if (counted_ >> lane & 1) texels_ += reader.texels;
     }
     for (std::size_t c = 0; c < 4; ++c) texel[c]->bits[lane] = bits[c];
   }
+  end_request(requests_);
 }
 
 }  // namespace beampipe

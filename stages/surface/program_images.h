@@ -15,6 +15,7 @@
 
 #include "stages/spirv/image_reader.h"
 #include "stages/spirv/lane_program.h"
+#include "stages/surface/texel_requests.h"
 #include "traces/program.h"
 
 namespace beampipe {
@@ -22,6 +23,7 @@ namespace beampipe {
 // An image as a draw binds it. Without an image, all reads give 0.
 struct ImageView {
   const ProgramImage* image = nullptr;
+  std::uint32_t number = 0;                 // of the image, in Trace::program_images
   const ProgramSampler* sampler = nullptr;  // of the image itself
   std::uint32_t base_level = 0, levels = 0, base_layer = 0, layers = 0;
   std::array<char, 4> swizzle{'r', 'g', 'b', 'a'};
@@ -38,19 +40,19 @@ BoundImages bound_images(const LaneProgram& program, const std::vector<BoundImag
 
 class ProgramImages : public ImageReader {
  public:
-  // Both must outlive it. `counted`: lanes whose texels are counted.
-  ProgramImages(const LaneProgram& program, const BoundImages& bound, std::uint64_t counted)
-      : program_(program), bound_(bound), counted_(counted) {}
+  // All must outlive it. Adds the texels that lanes of `counted` read to `requests`, if there are any: what four lanes
+  // read with one instruction is one request.
+  ProgramImages(const LaneProgram& program, const BoundImages& bound, std::uint64_t counted = 0,
+                TexelRequests* requests = nullptr)
+      : program_(program), bound_(bound), counted_(counted), requests_(requests) {}
 
   void read(const ImageRequest& request, const std::array<LaneRow*, 4>& texel) override;
-
-  std::uint64_t texels() const { return texels_; }  // one for each time that one was read
 
  private:
   const LaneProgram& program_;
   const BoundImages& bound_;
   std::uint64_t counted_;
-  std::uint64_t texels_ = 0;
+  TexelRequests* requests_;
 };
 
 }  // namespace beampipe

@@ -210,10 +210,9 @@ std::vector<ProgramShader::Group> ProgramShader::grouped(const LaneProgram& prog
   return groups;
 }
 
-std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> places,
-                                 std::span<const Group> groups, glm::vec4* colors, ShaderCounts& counts) const {
+void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
+                        glm::vec4* colors, TexelRequests* texels, ShaderCounts& counts) const {
   const bool has_helpers = draw.program->takes_differences;
-  std::uint64_t texels = 0;
   programs_->with_executor(draw.number, [&](ShaderExecutor& executor) {
     std::uint64_t active = 0, helpers = 0;
     std::array<std::uint32_t, kShaderLanes> place_of;
@@ -252,11 +251,10 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
       }
       set_inputs(draw, *last, std::span(lanes).first(count), helpers, executor);
     }
-    ProgramImages images(*draw.program, draw.images, active & ~helpers);
+    ProgramImages images(*draw.program, draw.images, active & ~helpers, texels);
     ShaderResources resources = draw.resources;
     resources.images = &images;
     executor.run(resources, groups.size() * kGroup, active, helpers, counts);
-    texels = images.texels();
     const std::uint64_t kept = executor.kept();
     for (std::size_t lane = 0; lane < kShaderLanes; ++lane) {
       if (place_of[lane] == Group::kNone) continue;
@@ -268,26 +266,22 @@ std::uint64_t ProgramShader::run(const BoundDraw& draw, std::span<const ProgramP
       colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : kDiscarded};
     }
   });
-  return texels;
 }
 
-std::uint64_t ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places,
-                                       glm::vec4* colors) const {
+void ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
+                              TexelRequests* texels) const {
   const std::vector<Group> groups = grouped(*draw.program, places);
   constexpr std::size_t kMost = kShaderLanes / kGroup;
   ShaderCounts counts;  // what is charged comes from measured()
-  std::uint64_t texels = 0;
   for (std::size_t first = 0; first < groups.size(); first += kMost)
-    texels +=
-        run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, counts);
-  return texels;
+    run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, texels, counts);
 }
 
-std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors) const {
-  if (places.empty()) return 0;
+void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {
+  if (places.empty()) return;
   const BoundDraw& draw = draws_[triangles_.draws[places[0].triangle]];
-  const std::uint64_t texels = shade_all(draw, places, colors);
-  if (draw.mode != AlphaMode::mask) return texels;
+  shade_all(draw, places, colors, texels);
+  if (draw.mode != AlphaMode::mask) return;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].is_there || colors[i].a != kDiscarded) continue;
     std::array<ProgramPlace, 4> around;
@@ -297,11 +291,10 @@ std::uint64_t ProgramShader::shade(std::span<const ProgramPlace> places, glm::ve
       around[k].u = std::clamp(places[i].u + (k % 2 == 0 ? -0.25f : 0.25f), 0.0f, 1.0f);
       around[k].v = std::clamp(places[i].v + (k < 2 ? -0.25f : 0.25f), 0.0f, 1.0f);
     }
-    shade_all(draw, around, found.data());
+    shade_all(draw, around, found.data(), nullptr);
     const auto kept = std::ranges::find_if(found, [](const glm::vec4& color) { return color.a != kDiscarded; });
     if (kept != found.end()) colors[i] = *kept;
   }
-  return texels;
 }
 
 ProgramShader::Cost ProgramShader::measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const {
@@ -325,7 +318,7 @@ ProgramShader::Cost ProgramShader::measured(std::uint32_t draw, std::span<const 
   const BoundDraw& bound = draws_[draw];
   std::array<glm::vec4, kMost> colors;
   ShaderCounts counts;
-  run(bound, places, grouped(*bound.program, places), colors.data(), counts);
+  run(bound, places, grouped(*bound.program, places), colors.data(), nullptr, counts);
   const auto mean = [&](std::uint64_t sum) { return (sum + counts.invocations / 2) / counts.invocations; };
   Cost cost;
   cost.ops = {mean(counts.ops.mul_add), mean(counts.ops.add),     mean(counts.ops.bit), mean(counts.ops.fetch),

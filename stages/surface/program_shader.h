@@ -44,8 +44,9 @@ class ProgramShader {
   // Sets the colour of each place. Alpha is that of the shader in the API's order and where the draw is blended, and
   // else 1; it is kDiscarded where the shader discards. A place that is_there then has the colour of one that is not
   // discarded, a quarter of a pixel away, if there is one. The places
-  // lie in triangles of one draw. Returns how many texels their invocations read, without helpers.
-  std::uint64_t shade(std::span<const ProgramPlace> places, glm::vec4* colors) const;
+  // lie in triangles of one draw. Adds the texels that their invocations read, without helpers, to `texels`, whose open
+  // request ends.
+  void shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels = nullptr) const;
 
   // What an invocation costs, helpers of its own left out: the mean over places in up to 16 of the draw's triangles,
   // which is exact where control flow is the same everywhere. `helpers`: how many it needs.
@@ -94,9 +95,10 @@ class ProgramShader {
   static std::vector<Group> grouped(const LaneProgram& program, std::span<const ProgramPlace> places);
   void set_inputs(const BoundDraw& draw, const ProgramPlace& place, std::span<const Lane> lanes, std::uint64_t helpers,
                   ShaderExecutor& executor) const;
-  std::uint64_t shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors) const;
-  std::uint64_t run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
-                    glm::vec4* colors, ShaderCounts& counts) const;
+  void shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
+                 TexelRequests* texels) const;
+  void run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
+           glm::vec4* colors, TexelRequests* texels, ShaderCounts& counts) const;
   Cost measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const;
 
   const SetupTriangles& triangles_;

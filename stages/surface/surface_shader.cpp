@@ -374,8 +374,7 @@ ProgramPlace SurfaceShader::program_place(std::uint32_t triangle, const ShadingP
 }
 
 void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {
-  const std::uint64_t count = programs_.shade(places, colors);
-  if (texels) texels->count(count);
+  programs_.shade(places, colors, texels);
   for (std::size_t i = 0; i < places.size(); ++i) {
     glm::vec3 color(colors[i]);
     round_to(rules_.stored_as, color);
@@ -403,7 +402,7 @@ void SurfaceShader::add_program_texels(const std::vector<Invocation>& invocation
   std::vector<glm::vec4> ignored;
   for_each_draw(invocations, numbers, [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>&) {
     ignored.resize(places.size());
-    texels.count(programs_.shade(places, ignored.data()));
+    programs_.shade(places, ignored.data(), &texels);
   });
 }
 

@@ -96,7 +96,7 @@ class Captures(unittest.TestCase):
         self.assertEqual(left, [])
 
     def test_vulkan(self):
-        trace = self.trace_of("vkcube", "--frame", "30", "--", "vkcube")
+        trace = self.trace_of("vkcube", "--after", "1", "--", "vkcube")
         self.assertEqual(trace["source"]["api"], "Vulkan")
         self.assertEqual([len(mesh) > 0 for mesh in trace["meshes"].values()], [True])
         self.assertEqual(sum(mesh["indices"]["count"] for mesh in trace["meshes"].values()), 36)

@@ -16,6 +16,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
                 os.path.join(os.path.dirname(__file__), "../../tools/capture"))
 sys.dont_write_bytecode = True
+import clears
 import frame
 import geometry
 import images
@@ -339,6 +340,66 @@ class Passes(unittest.TestCase):
         self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, DS=Clear)"), (False, True, True))
         self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, D=Load, S=Clear)"), (False, False, True))
         self.assertEqual(passes.clears_of("vkCmdBeginRendering(C=Load, D=Load)"), (False, False, False))
+
+
+class Parameters:
+    """Stands for RenderDoc's record of a command's parameters: dictionaries, lists and numbers."""
+
+    def __init__(self, value):
+        self.value = value
+
+    def FindChild(self, name):
+        return Parameters(self.value[name]) if name in self.value else None
+
+    def FindChildRecursively(self, name):
+        if name in self.value:
+            return self.FindChild(name)
+        found = (Parameters(each).FindChildRecursively(name) for each in self.value.values() if isinstance(each, dict))
+        return next((each for each in found if each is not None), None)
+
+    def NumChildren(self):
+        return len(self.value)
+
+    def GetChild(self, number):
+        return Parameters(self.value[number])
+
+    def AsInt(self):
+        return int(self.value)
+
+    def AsFloat(self):
+        return float(self.value)
+
+
+class ClearCommands(unittest.TestCase):
+    @staticmethod
+    def value(depth, stencil):
+        return {"clearValue": {"depthStencil": {"depth": depth, "stencil": stencil}}}
+
+    def check(self, found, color, depth, stencil, parts=False):
+        self.assertEqual((found.color, found.depth, found.stencil, found.parts), (color, depth, stencil, parts))
+
+    def test_render_passes(self):
+        dynamic = Parameters({"pRenderingInfo": {"pDepthAttachment": self.value(0.25, 0),
+                                                 "pStencilAttachment": self.value(0, 7)}})
+        self.check(clears.of_render_pass(dynamic, "vkCmdBeginRendering(C=Clear, DS=Clear)"), True, 0.25, 7)
+        self.check(clears.of_render_pass(dynamic, "vkCmdBeginRendering(C=Load, D=Load, S=Clear)"), False, None, 7)
+        self.check(clears.of_render_pass(dynamic, "vkCmdBeginRendering(C=Clear, DS=Load)"), True, None, None)
+        old = Parameters({"RenderPassBegin": {"pClearValues": [{"color": {}}, {"depthStencil": {"depth": 0.5,
+                                                                                               "stencil": 3}}]}})
+        self.check(clears.of_render_pass(old, "vkCmdBeginRenderPass(C=Clear, DS=Clear)"), True, 0.5, 3)
+
+    def test_attachments_are_cleared_whole_or_in_parts(self):
+        rectangle = lambda x, width: {"rect": {"offset": {"x": x, "y": 0}, "extent": {"width": width, "height": 8}}}
+        of = lambda rectangles, *attachments: clears.of_attachments(
+            Parameters({"pRects": rectangles, "pAttachments": list(attachments)}), (16, 8))
+        color, both = {"aspectMask": 1, "clearValue": {"color": {}}}, {"aspectMask": 6, **self.value(0.75, 9)}
+        self.check(of([rectangle(0, 16)], color, both), True, 0.75, 9)
+        self.check(of([rectangle(0, 16)], {**both, "aspectMask": 4}), False, None, 9)
+        self.check(of([rectangle(4, 12)], both), False, None, None, True)
+
+    def test_images(self):
+        image = Parameters({"pDepthStencil": {"depth": 1, "stencil": 2}, "pRanges": [{"aspectMask": 2}]})
+        self.check(clears.of_depth_image(image), False, 1, None)
 
 
 class Frames(unittest.TestCase):

@@ -141,7 +141,7 @@ std::vector<std::uint32_t> outputs_of(const LaneProgram& program, const ShaderEx
 void run(const LaneProgram& program) {
   static const FuzzImages fuzz_images;
   const BoundImages bound = fuzz_images.bind(program);
-  ProgramImages images(program, bound, kActive & ~kHelpers);
+  ProgramImages images(program, bound);
   std::mt19937 random(1);
   std::vector<std::byte> bytes(100);
   for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());

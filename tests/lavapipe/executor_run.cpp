@@ -73,7 +73,7 @@ CaseOutputs run_executor(const ShaderCase& shader, const LaneProgram& program) {
       outputs.locations[location] = {.is_integer = !floats, .pixels = std::vector<FourBits>(kPixels)};
 
   const BoundImages bound = bound_images(program, shader.use.images, shader.images, shader.samplers);
-  ProgramImages images(program, bound, 0);
+  ProgramImages images(program, bound);
   ShaderResources resources;
   for (const BufferSlot& slot : program.buffers) {
     std::span<const std::byte>& bytes = resources.buffers.emplace_back();
@@ -116,7 +116,7 @@ CaseOutputs run_executor(const ShaderCase& shader, const LaneProgram& program) {
 
 void Agreement::operator+=(const Agreement& more) {
   if (example.empty()) example = more.example;
-  outputs += more.outputs, near += more.near;
+  outputs += more.outputs, near += more.near, roughly += more.roughly;
   worst = std::max(worst, more.worst);
 }
 
@@ -130,17 +130,18 @@ Agreement compare(const LaneProgram& program, const CaseOutputs& driver, const C
       const std::uint32_t theirs = driver.locations.at(row.location).pixels[pixel][row.component],
                           ours = executor.locations.at(row.location).pixels[pixel][row.component];
       const double a = std::bit_cast<float>(theirs), b = std::bit_cast<float>(ours);
-      bool is_near = theirs == ours;
+      bool is_near = theirs == ours, is_roughly = is_near;
       if (row.is_float && std::isfinite(a) && std::isfinite(b)) {
         const double error = std::abs(a - b) / std::max(1.0, std::abs(a));
         found.worst = std::max(found.worst, error);
-        is_near = error <= tolerance;
+        is_near = error <= tolerance, is_roughly = error <= 100 * tolerance;
       } else if (row.is_float) {
-        is_near = a == b || (std::isnan(a) && std::isnan(b));
+        is_near = is_roughly = a == b || (std::isnan(a) && std::isnan(b));
       }
-      is_near &= driver.is_kept[pixel] == executor.is_kept[pixel];
+      const bool is_same_pixel = driver.is_kept[pixel] == executor.is_kept[pixel];
+      is_near &= is_same_pixel;
       ++found.outputs;
-      found.near += is_near;
+      found.near += is_near, found.roughly += is_roughly && is_same_pixel;
       if (is_near || !found.example.empty()) continue;
       const auto text = [&](const CaseOutputs& outputs, std::uint32_t bits) {
         if (!outputs.is_kept[pixel]) return std::string("discarded");

@@ -20,8 +20,9 @@ CaseOutputs run_executor(const ShaderCase& shader, const LaneProgram& program);
 // output that is near.
 struct Agreement {
   std::uint64_t outputs = 0, near = 0;
-  double worst = 0;       // of those that are numbers in both, as `tolerance` is meant
-  std::string example{};  // of one that is not near
+  std::uint64_t roughly = 0;  // within 100 times the tolerance
+  double worst = 0;           // of those that are numbers in both, as `tolerance` is meant
+  std::string example{};      // of one that is not near
   double share() const { return outputs == 0 ? 1 : static_cast<double>(near) / static_cast<double>(outputs); }
   void operator+=(const Agreement& more);
 };

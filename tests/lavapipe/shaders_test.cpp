@@ -151,6 +151,10 @@ TEST_F(LavapipeShaders, FunctionsThatRoundOnce) {
   one("Sqrt %va", 0, 100), one("InverseSqrt %va", 0.01f, 100);
   for (const std::string name : {"FMix", "Fma"}) one(name + " %va %vb %vc");
   one("FClamp %va %f0000 %f1111"), one("NClamp %va %f0000 %f1111");
+  const std::string nothing =
+      "%s = OpFOrdLessThan %b4 %va %vb\n%q = OpFDiv %v4 %f0000 %f0000\n%x = OpSelect %v4 %s %q %va\n";
+  for (const std::string name : {"FMin %x %vc", "FMax %vc %x", "NMin %vc %x", "NMax %x %vc", "FClamp %x %f0000 %f1111"})
+    floats(nothing + "%r = OpExtInst %v4 %glsl " + name);
   one("SmoothStep %f0000 %f1111 %va", -0.5f, 1.5f);
 }
 

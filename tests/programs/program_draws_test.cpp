@@ -154,6 +154,13 @@ TEST(ProgramDraws, TexelsAndOperationsAreCharged) {
   EXPECT_EQ(one_by_one.lanes_issued, 3 * 72u);
   EXPECT_EQ(one_by_one.ops.fetch, 3 * 72u);
   EXPECT_EQ(one_by_one.texture_bytes, 72u * 4);
+  // All texels lie in one sector, for which each quad or pixel asks once, L1 asks once, and L2 asks once.
+  EXPECT_EQ(quads.texture_sector_bytes, 20u * 32);
+  EXPECT_EQ(one_by_one.texture_sector_bytes, 72u * 32);
+  for (const StageCounters& stage : {quads, one_by_one}) {
+    EXPECT_EQ(stage.texture_l2_bytes, 32u);
+    EXPECT_EQ(stage.texture_dram_bytes, 32u);
+  }
 }
 
 TEST(ProgramDraws, DerivativesArePerPixel) {

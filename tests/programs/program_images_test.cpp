@@ -55,7 +55,8 @@ class Reader {
 
   std::array<std::uint32_t, 4> bits(const Question& question) {
     const BoundImages bound = bound_images(program_, {view_}, images_, samplers_);
-    ProgramImages reader(program_, bound, ~std::uint64_t{0});
+    TexelRequests texels(nullptr);
+    ProgramImages reader(program_, bound, ~std::uint64_t{0}, &texels);
     std::vector<std::unique_ptr<LaneRow>> rows;
     const auto row = [&](std::uint32_t value) {
       rows.push_back(std::make_unique<LaneRow>());
@@ -78,7 +79,7 @@ class Reader {
     request.active = row(~0u);
     std::array<LaneRow, 4> texel;
     reader.read(request, {&texel[0], &texel[1], &texel[2], &texel[3]});
-    texels_ = reader.texels();
+    texels_ = texels.texels();
     return {texel[0].bits[0], texel[1].bits[0], texel[2].bits[0], texel[3].bits[0]};
   }
   std::array<float, 4> numbers(const Question& question) { return std::bit_cast<std::array<float, 4>>(bits(question)); }
@@ -96,6 +97,36 @@ ProgramSampler nearest(SamplerWrap wrap = SamplerWrap::repeat) {
   return {.mag = Filter::nearest, .min = Filter::nearest, .mip = Filter::nearest, .wrap = {wrap, wrap, wrap}};
 }
 ProgramSampler linear(SamplerWrap wrap = SamplerWrap::clamp_to_edge) { return {.wrap = {wrap, wrap, wrap}}; }
+
+// Eight lanes read texel (2 lane, 0) of level 1: of 16-byte texels, two sectors of 16 bytes of a row each lie between
+// neighbours. The first lane is not counted, and the seventh asks for nothing.
+TEST(ProgramImages, FourLanesAreARequest) {
+  ProgramImage image{.name = "wide", .format = TexelFormat::R32G32B32A32_SFLOAT, .texels = {}};
+  image.width = 32, image.height = 4, image.levels = 2;
+  image.texels.resize(level_start(image, 2));
+  const std::vector<ProgramImage> images{numbered(ImageShape::d1, 4), image};
+  LaneProgram program;
+  program.images.push_back({.set = 0, .binding = 0, .has_sampler = true});
+  const BoundImages bound = bound_images(program, {{.set = 0, .binding = 0, .image = 1}}, images, {});
+  const TextureLayout layout(TextureSet(Trace{}), images);
+  TexelRequests texels(&layout);
+  texels.read(ProgramTexelRead{.image = 0, .level = 0, .slice = 0, .x = 0, .y = 0});  // a request that ends
+  ProgramImages reader(program, bound, 0xfe, &texels);
+  LaneRow x{}, zero{}, level{}, active{};
+  level.bits.fill(1);
+  for (std::uint32_t lane = 0; lane < 8; ++lane) x.bits[lane] = 2 * lane, active.bits[lane] = lane == 6 ? 0 : ~0u;
+  ImageRequest request{.action = ImageAction::fetch, .lanes = 8, .active = &active};
+  request.coordinates = {&x, &zero}, request.lod = &level;
+  std::array<LaneRow, 4> texel;
+  for (int i = 0; i < 2; ++i) reader.read(request, {&texel[0], &texel[1], &texel[2], &texel[3]});
+  std::vector<std::vector<std::uint64_t>> found;
+  texels.for_each([&](std::span<const std::uint64_t> sectors) { found.emplace_back(sectors.begin(), sectors.end()); });
+  // The line of the first image; then level 0 has 16 lines, of two texels each in four rows.
+  const auto sector = [](std::uint64_t lane) { return (1 + 16 + lane) * 4; };
+  const std::vector<std::uint64_t> first{sector(1), sector(2), sector(3)}, second{sector(4), sector(5), sector(7)};
+  EXPECT_EQ(found, (std::vector<std::vector<std::uint64_t>>{{0}, first, second, first, second}));
+  EXPECT_EQ(texels.texels(), 1u + 2 * 6);
+}
 
 TEST(ProgramImages, WrapsAtEdges) {
   // Texels -5 .. 8 of a row of 4.

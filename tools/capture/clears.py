@@ -28,7 +28,7 @@ def of_render_pass(chunk, name):
         return Clears(color)
     dynamic = _child(chunk, "pRenderingInfo")
     if dynamic is None:  # one value for each attachment; depth comes last
-        values = _children(_child(chunk, "RenderPassBegin", "pClearValues") or chunk.FindChildRecursively("pClearValues"))
+        values = _children(chunk.FindChildRecursively("pClearValues"))
         return Clears(color, *_depth_stencil(_child(values[-1], "depthStencil") if values else None, clears_depth,
                                              clears_stencil))
     at = lambda attachment: _child(dynamic, attachment, "clearValue", "depthStencil")

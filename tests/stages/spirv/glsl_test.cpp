@@ -130,6 +130,29 @@ TEST(SpirvGlsl, Limits) {
   expect("InverseSqrt", 0, kInfinity), expect("Sqrt", -1, kNan), expect("FSign", -0.0f, 0);
 }
 
+// SPIR-V leaves open what FMin and FMax make of what is not a number; graphics processors take the number.
+TEST(SpirvGlsl, ExtremesOfWhatIsNotANumber) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::string kind : {"F", "N"})
+    for (const std::string name : {"Min", "Max"}) {
+      TestShader shader(ShaderParts{.body = "%r = OpExtInst %v4 %glsl " + kind + name + " %va %vb\nOpStore %out %r"});
+      shader.set(0, 0, 0, nan), shader.set(1, 0, 0, 2);
+      shader.set(0, 0, 1, 2), shader.set(1, 0, 1, nan);
+      shader.set(0, 0, 2, nan), shader.set(1, 0, 2, nan);
+      shader.run();
+      EXPECT_EQ(shader.number(0, 0), 2) << kind << name;
+      EXPECT_EQ(shader.number(0, 1), 2) << kind << name;
+      EXPECT_TRUE(std::isnan(shader.number(0, 2))) << kind << name;
+    }
+  for (const std::string kind : {"F", "N"}) {
+    TestShader shader(
+        ShaderParts{.body = "%r = OpExtInst %v4 %glsl " + kind + "Clamp %va %vb %f1111\nOpStore %out %r"});
+    shader.set(0, 0, 0, nan), shader.set(1, 0, 0, 0.25f);
+    shader.run();
+    EXPECT_EQ(shader.number(0, 0), 0.25f) << kind;
+  }
+}
+
 // Of two and three operands, on numbers within `least` and `most`.
 void expect_near(const std::string& instruction, const std::function<double(double, double, double)>& function,
                  float least, float most, double units) {

@@ -74,6 +74,37 @@ TEST(TextureLayout, SharesOfAlphaTestsLieBehindTheImages) {
   EXPECT_EQ(line(2, 0), 8u);
 }
 
+// Behind the 23 lines of the materials' images: a cube of one-byte texels with faces of 40 x 8 and 20 x 4, and a volume
+// of 8-byte texels, 5 x 5 x 2 and 2 x 2 x 1.
+TEST(TextureLayout, ImagesOfProgramsHaveSlicesAndTexelsOfAnySize) {
+  std::vector<ProgramImage> images(2);
+  images[0].format = TexelFormat::R8_UNORM, images[0].width = 40, images[0].height = 8, images[0].layers = 6;
+  images[0].levels = 2;
+  images[1].shape = ImageShape::d3, images[1].format = TexelFormat::R16G16B16A16_SFLOAT;
+  images[1].width = 5, images[1].height = 5, images[1].depth = 2, images[1].levels = 2;
+  const TextureSet textures = two_images();
+  const TextureLayout layout(textures, images);
+  struct Place {
+    ProgramTexelRead texel;
+    std::uint64_t line, sector;
+  };
+  for (const Place& place : {Place{{0, 0, 0, 0, 0}, 0, 0},
+                             {{0, 0, 0, 15, 1}, 0, 0},
+                             {{0, 0, 0, 16, 2}, 0, 3},
+                             {{0, 0, 0, 39, 7}, 3, 2},  // two lines a row of lines, two rows
+                             {{0, 0, 5, 0, 0}, 20, 0},  // of four lines a face
+                             {{0, 1, 1, 0, 0}, 25, 0},  // of one
+                             {{1, 0, 0, 0, 0}, 30, 0},
+                             {{1, 0, 0, 3, 0}, 30, 1},
+                             {{1, 0, 0, 4, 0}, 31, 0},
+                             {{1, 0, 1, 4, 4}, 37, 0},  // of 2 x 2 lines a slice
+                             {{1, 1, 0, 1, 1}, 38, 0}})
+    EXPECT_EQ(layout.sector_of(place.texel), (23 + place.line) * 4 + place.sector)
+        << "image " << place.texel.image << ", level " << place.texel.level << ": " << place.texel.x << ", "
+        << place.texel.y;
+  EXPECT_EQ(layout.bytes(), (23u + 39) * 128);
+}
+
 TEST(TexelRequests, ARequestAsksForEachSectorOnce) {
   const TextureSet textures = two_images();
   const TextureLayout layout(textures);
