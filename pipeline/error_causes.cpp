@@ -6,6 +6,7 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "stages/beam/beam_fragment.h"
+#include "stages/geometry/draw_plan.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/reference_raster.h"
 
@@ -167,7 +168,13 @@ class TileExplainer {
  public:
   // Both, and the bin, must outlive it.
   TileExplainer(const FrameContext& context, const Bin& bin, const Comparer& comparer)
-      : comparer_(comparer), background_(context.background), tile_(bin.tile), shader_(bin.shader()), truth_(bin.tile) {
+      : is_by_depth_(!needs_api_order(context.trace, context.frame)),
+        comparer_(comparer),
+        background_(context.background),
+        tile_(bin.tile),
+        shader_(bin.shader()),
+        truth_(bin.tile) {
+    if (!is_by_depth_) return;
     StageCounters unused;
     reference_raster(context.triangles, bin.list, tile_, unused, truth_, &shader_);
     layers_ = layers_of_pixels(truth_, tile_);
@@ -179,6 +186,12 @@ class TileExplainer {
 
   // `pixel`: its number in the tile. `error`: of its colour.
   ExplainedPixel explain(std::size_t pixel, const PixelWeights& weights, const glm::dvec3& error) const {
+    const double length = std::sqrt(glm::dot(error, error) / 3);
+    if (!is_by_depth_) {
+      ExplainedPixel unknown;
+      unknown.causes[rounding] = length;
+      return unknown;
+    }
     const auto columns = static_cast<std::size_t>(tile_.width());
     std::vector<PixelSurface> seen = surfaces_->at(
         pixel, weights, shares_of_samples(truth_, pixel % columns, pixel / columns, pixel, layers_[pixel], shader_),
@@ -187,7 +200,6 @@ class TileExplainer {
     for (const PixelSurface& each : seen)
       explained.surfaces.push_back({each.triangle, each.weight, each.truth, each.color});
     find_transfers(seen, comparer_, explained.transfers);
-    const double length = std::sqrt(glm::dot(error, error) / 3);
     if (length == 0) return explained;
     std::array<glm::dvec3, kErrorCauses.size()> errors{};
     for (const AreaTransfer& each : explained.transfers)
@@ -200,6 +212,7 @@ class TileExplainer {
   }
 
  private:
+  const bool is_by_depth_;
   const Comparer& comparer_;
   const glm::vec3 background_;
   const Tile tile_;

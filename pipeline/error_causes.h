@@ -14,7 +14,9 @@
 // If surfaces vary, all this holds for pictures and weights that are rendered with SurfaceColors::by_pixel: each
 // triangle has one colour in a pixel then, and the error is one of visibility.
 //
-// The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`.
+// The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`. In
+// frames that need the API's order, where colours are products of what draws do, that is all of it, and pixels have no
+// surfaces.
 //
 // Depths are compared at 256 exact positions. At equal depth the earlier triangle counts as nearer.
 #pragma once

@@ -31,13 +31,6 @@ std::size_t first_position(const WideMask& positions) {
   return 32 * word + static_cast<std::size_t>(std::countr_zero(positions.words[word]));
 }
 
-bool is_same_state(const Region& a, const Region& b) {
-  if (a.triangle != b.triangle || a.stencil != b.stencil) return false;
-  bool is_same = true;
-  for (int c = 0; c < 4; ++c) is_same &= std::abs(a.color[c] - b.color[c]) <= kSameColor;
-  return is_same;
-}
-
 // Region b becomes part of a, which keeps its depth and stencil value.
 void join(Region& a, const Region& b) {
   const float share = share_of(static_cast<float>(b.area), static_cast<float>(a.area + b.area));
@@ -160,18 +153,29 @@ class RegionComposer {
   // The pixel's regions have changed.
   void store(std::uint32_t triangle) {
     const std::size_t count = pixel_->regions.size();
-    const std::uint32_t before = pixel_->chunks.count,
-                        after = region_chunks(count, pixel_->specks.area > 0, pixels_.words);
-    if (after != before) {
-      pixels_.pool.resize(pixel_->chunks, after);
-      work.bytes_written += pixels_.pool.link_bytes();
-      if (after > before) work.bytes_read += (after - before) * pixels_.pool.link_bytes();
-    }
+    const std::uint32_t after = region_chunks(count, pixel_->specks.area > 0, pixels_.words);
+    if (after != pixel_->chunks.count) resize(after);
     float& most = maps_.record_bytes[index_];
     most = std::max(most, static_cast<float>(after * (kChunkBytes + pixels_.pool.link_bytes())));
     work.bytes_written += kPixelWordBytes;
     ++work.changing;
     visit(triangle, true);
+  }
+
+  // Links of chunks that are taken are read, and the last one's is written. What chunks in memory held that are given
+  // back may still be needed: then it moves.
+  void resize(std::uint32_t count) {
+    ChunkPool::Chunks& chunks = pixel_->chunks;
+    const ChunkPool::Chunks before = chunks;
+    pixels_.pool.resize(chunks, count);
+    if (before.count > 0) work.bytes_written += pixels_.pool.link_bytes();
+    if (count > before.count) work.bytes_read += (count - before.count) * pixels_.pool.link_bytes();
+    if (chunks.in_memory > before.in_memory) count_spills({.reads = chunks.in_memory - before.in_memory + 0u});
+    if (chunks.in_memory >= before.in_memory) return;
+    const std::uint32_t moved = std::min<std::uint32_t>(before.in_memory, count) - chunks.in_memory;
+    work.bytes_read += moved * kChunkBytes;
+    work.bytes_written += moved * kChunkBytes;
+    count_spills({.reads = moved, .writes = 1});
   }
 
   // ---- Tests ----
@@ -265,7 +269,7 @@ class RegionComposer {
         whole += static_cast<float>(region.area);
         continue;
       }
-      work.counts += 2;
+      work.counts += meetings_.size() > 1 ? 2 : 1;  // all positions are a single region's
       ++work.parts;
       estimates_[k] = part_inside(static_cast<float>(region.area), static_cast<float>(met.inside.count()),
                                   static_cast<float>(region.positions.count()));
@@ -343,10 +347,19 @@ class RegionComposer {
     part.is_touched = true;
   }
 
+  bool is_same_state(const Region& a, const Region& b) {
+    ++work.comparisons;
+    if (a.triangle != b.triangle || a.stencil != b.stencil) return false;
+    for (int c = 0; c < 4; ++c) {
+      ++work.channels_compared;
+      if (std::abs(a.color[c] - b.color[c]) > kSameColor) return false;
+    }
+    return true;
+  }
+
   // Adds a region to those of its state, if there are any.
   void put(const Region& part) {
     for (Region& region : pixel_->regions) {
-      ++work.comparisons;
       if (!is_same_state(region, part)) continue;
       work.mixes += region.color != part.color;
       return join(region, part);
@@ -478,7 +491,7 @@ void charge(const RegionsWork& work, std::size_t words, StageCounters& counters)
                         of_position = region_costs::contest_at_position(), of_part = region_costs::part(),
                         of_pair = region_costs::pair(), of_mix = region_costs::mix(),
                         of_addition = region_costs::addition(), of_speck = speck_votes_cost(0);
-  constexpr OperationCounts kOfComparison{.add = 2 + 4 + 4, .bit = 4};  // triangle, stencil value, four channels
+  constexpr OperationCounts kOfComparison{.add = 2}, kOfChannel{.add = 2, .bit = 1};  // triangle and stencil value
   const RegionUnitCosts& of_masks = costs[std::bit_width(words) - 1];
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
     counters.ops += of_masks.splits[planes] * work.splits[planes];
@@ -492,6 +505,7 @@ void charge(const RegionsWork& work, std::size_t words, StageCounters& counters)
   counters.ops += of_position * work.positions_compared;
   counters.ops += of_part * work.parts;
   counters.ops += kOfComparison * work.comparisons;
+  counters.ops += kOfChannel * work.channels_compared;
   counters.ops += of_pair * work.pairs_compared;
   counters.ops += of_mix * work.mixes;
   counters.ops += of_speck * work.specks;

@@ -30,6 +30,7 @@ struct RegionsWork {
   std::uint64_t positions_compared = 0;                 // of these, at positions
   std::uint64_t parts = 0;                              // regions whose area was divided
   std::uint64_t comparisons = 0;                        // of the states of two regions
+  std::uint64_t channels_compared = 0;                  // of two colours
   std::uint64_t pairs_compared = 0;                     // of regions that may be merged
   std::uint64_t mixes = 0;                              // of the colours of two regions
   std::uint64_t finished = 0;                           // regions that were added to their pixel

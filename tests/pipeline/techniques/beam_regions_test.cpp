@@ -1,5 +1,6 @@
 // beam in the API's order: random streams of draws against the reference, and frames at the edge of what there is.
 
+#include "pipeline/error_causes.h"
 #include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
@@ -177,6 +178,23 @@ TEST(BeamRegions, HistoriesExplainPixels) {
       for (const HistoryTerm& term : history.terms) sum += term.weight * term.color;
       const glm::vec3 found = pixel(image, history.at.x, history.at.y);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], found[c], 0.02) << seed << ": " << history.at.x;
+    }
+  }
+}
+
+TEST(BeamRegions, NoWeightsExplainErrorsInTheApisOrder) {
+  const Trace trace = random_stream(4);
+  ASSERT_TRUE(needs_api_order(trace, trace.frames[0]));
+  std::vector<PixelWeights> weights;
+  FrameInput run{1};
+  FrameSinks sinks;
+  sinks.weights = &weights;
+  const Image image = parse_technique("beam").render(trace, 0, run, sinks).image, truth = picture("reference", trace);
+  for (const auto& [cause, values] : error_causes({trace, trace.frames[0], run, {}}, weights, image, truth)) {
+    for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+      const glm::dvec3 error =
+          glm::dvec3(pixel(image, i % kSize, i / kSize)) - glm::dvec3(pixel(truth, i % kSize, i / kSize));
+      EXPECT_NEAR(values[i], cause == "rounding" ? glm::length(error) / std::sqrt(3.0) : 0, 1e-6) << cause;
     }
   }
 }
