@@ -8,6 +8,7 @@
 #include "stages/beam/compose_regions_cost.h"
 #include "stages/data/half_bits.h"
 #include "stages/data/pixel_formats.h"
+#include "stages/rop/stored_color.h"
 
 namespace beampipe {
 namespace {
@@ -16,14 +17,6 @@ constexpr auto kWhole = static_cast<float>(kWholeArea), kAllDrawn = static_cast<
 
 // As fp16, and what is no number as 0.
 float stored(float channel) { return std::isnan(channel) ? 0.0f : rounded_to_half(channel); }
-
-glm::vec4 blended(const RopRules& rules, const RopRule& rule, const glm::vec4& source, const glm::vec4& before) {
-  glm::vec4 result = source;
-  for (int c = 0; rule.blend && c < 4; ++c) result[c] = blended_channel(*rule.blend, c, &source[0], &before[0]);
-  if (rules.limits_color) result = glm::clamp(result, 0.0f, 1.0f);
-  for (int c = 0; c < 4; ++c) result[c] = rule.color_mask >> c & 1 ? stored(result[c]) : before[c];
-  return result;
-}
 
 std::size_t first_position(const WideMask& positions) {
   std::size_t word = 0;
@@ -342,7 +335,7 @@ class RegionComposer {
     if (rule_->writes_depth) part.triangle = fragment.triangle, part.plane = fragment.plane;
     if (!writes_color_) return;
     work.by_state += of_blend_;
-    part.color = blended(bin_.rules, *rule_, color, part.color);
+    part.color = stored_color(bin_.rules, *rule_, color, part.color, stored);
     part.drawn = kWhollyDrawn;
     part.is_touched = true;
   }
@@ -440,7 +433,7 @@ class RegionComposer {
     work.by_state += region_costs::blend(rule);
     ++work.mixes;
     const float share = std::min(specks.area / static_cast<float>(region.area), 1.0f);
-    const glm::vec4 now = blended(bin_.rules, rule, specks.color, region.color);
+    const glm::vec4 now = stored_color(bin_.rules, rule, specks.color, region.color, stored);
     for (int c = 0; c < 4; ++c) region.color[c] = stored(mixture(region.color[c], now[c], share));
     region.drawn = static_cast<std::uint8_t>(mixture(static_cast<float>(region.drawn), kAllDrawn, share) + 0.5f);
     work.bytes_read += kChunkBytes, work.bytes_written += kRegionBytes;

@@ -7,7 +7,7 @@
 
 #include "stages/raster/reference_raster_cost.h"
 #include "stages/raster/reference_spans.h"
-#include "stages/rop/rop_formulas.h"
+#include "stages/rop/stored_color.h"
 
 namespace beampipe {
 namespace {
@@ -195,20 +195,11 @@ class OrderedSamples {
     if (!at_once) divide(cell, first);
     for (std::uint32_t left = at_once ? 1u : passed_[cell]; left != 0; left &= left - 1) {
       const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left)) * surface_.row_samples;
-      surface_.color[at] = after(rule, source, stored_at(at));
+      surface_.color[at] = stored_color(rules_, rule, source, stored_at(at), [](float channel) { return channel; });
     }
     for (std::uint32_t left = passed_[cell]; left != 0; left &= left - 1)
       surface_.owner[first + static_cast<std::size_t>(std::countr_zero(left)) * surface_.row_samples] = kColoredOwner;
     passed_[cell] = 0;
-  }
-
-  glm::vec4 after(const RopRule& rule, const glm::vec4& source, glm::vec4 stored) const {
-    glm::vec4 result = source;
-    for (int c = 0; rule.blend && c < 4; ++c) result[c] = blended_channel(*rule.blend, c, &source[0], &stored[0]);
-    if (rules_.limits_color) result = glm::clamp(result, 0.0f, 1.0f);
-    for (int c = 0; c < 4; ++c)
-      if (rule.color_mask >> c & 1) stored[c] = result[c];
-    return stored;
   }
 
   const SetupTriangles& triangles_;

@@ -1,24 +1,12 @@
 #include "stages/samples/ordered_blend.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "stages/data/sample_tile.h"
+#include "stages/rop/stored_color.h"
 #include "stages/samples/ordered_blend_cost.h"
 
 namespace beampipe {
-namespace {
-
-void write(const RopRules& rules, const RopRule& rule, AccumulatorFormat format, const glm::vec4& source,
-           glm::vec4& stored) {
-  glm::vec4 result = source;
-  for (int c = 0; rule.blend && c < 4; ++c) result[c] = blended_channel(*rule.blend, c, &source[0], &stored[0]);
-  if (rules.limits_color) result = glm::clamp(result, 0.0f, 1.0f);
-  for (int c = 0; c < 4; ++c)
-    if (rule.color_mask >> c & 1) stored[c] = rounded_to(format, result[c]);
-}
-
-}  // namespace
 
 void ordered_blend(const SampledTriangles& in, const RopRules& rules, const ColoredFragments& fragments,
                    StageCounters& counters, OrderedTile& surface, std::vector<OrderedAccess>& accesses) {
@@ -46,7 +34,8 @@ void ordered_blend(const SampledTriangles& in, const RopRules& rules, const Colo
             rule.blend ? blend_parts(*rule.blend, fragments.colors[i], surface.color[at]) : BlendParts{};
         observer->blends(fragment.triangle, first + s, parts.added, parts.kept, glm::vec3(fragments.colors[i]));
       }
-      write(rules, rule, surface.format, fragments.colors[i], surface.color[at]);
+      surface.color[at] = stored_color(rules, rule, fragments.colors[i], surface.color[at],
+                                       [&](float channel) { return rounded_to(surface.format, channel); });
       surface.is_drawn[at] = true;
     }
     const auto written = static_cast<std::uint64_t>(std::popcount(fragment.mask));

@@ -115,7 +115,7 @@ TEST(BeamRegions, RandomStreamsAreAsGoodAsManySamples) {
   EXPECT_LT(of_small, of_few);
 }
 
-TEST(BeamRegions, ThreadsAndBandsChangeNothing) {
+TEST(BeamRegions, ThreadsChangeNothing) {
   const Trace trace = random_stream(3);
   ASSERT_TRUE(needs_api_order(trace, trace.frames[0]));
   const Technique beam = parse_technique("beam:bin=8");
