@@ -6,7 +6,6 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/geometry/draw_plan.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/reference_raster.h"
 
@@ -168,7 +167,7 @@ class TileExplainer {
  public:
   // Both, and the bin, must outlive it.
   TileExplainer(const FrameContext& context, const Bin& bin, const Comparer& comparer)
-      : is_by_depth_(!needs_api_order(context.trace, context.frame)),
+      : is_by_depth_(!context.rop),
         comparer_(comparer),
         background_(context.background),
         tile_(bin.tile),
@@ -236,7 +235,7 @@ glm::dvec3 rgb(const Image& image, std::size_t pixel) {
 
 std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, const std::vector<PixelWeights>& weights,
                                                        const Image& image, const Image& reference) {
-  const FrameContext context(job);
+  const FrameContext context(job, {}, DrawOrder::of_api);
   const Comparer comparer;
   FrameResult result = render_bins(context, plan_of_bins(), [&](Bin& bin) {
     const Tile& tile = bin.tile;
@@ -264,7 +263,7 @@ std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& fram
   FrameInput options = run;
   options.pixels = &addresses;
   options.memory.modelled = false;
-  const FrameContext context({trace, frame, options, {}});
+  const FrameContext context({trace, frame, options, {}}, {}, DrawOrder::of_api);
   const Comparer comparer;
   std::vector<ExplainedPixel> explained(pixels.size());
   BinPlan plan = plan_of_bins();

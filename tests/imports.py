@@ -18,7 +18,7 @@ The rules:
     include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
     and costs that stages share), spirv/ (runs shaders), surface/ (what surfaces look like, wherever they are shaded)
-    and rop/ (what draws do to what is stored): group -> surface, rop -> spirv -> cost -> data -> simd. Of these, only
+    and rop/ (what draws do to what is stored): group -> surface -> rop, spirv -> cost -> data -> simd. Of these, only
     groups, surface/ and rop/ may include traces. No group includes another.
 6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h, X_cost.cpp and parts of its
     kernel, X_PART-inl.h, and they include no other files of the group than these and the headers in SHARED_IN_GROUP.
@@ -43,7 +43,7 @@ ORDER = {
         "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
         "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
-    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost", "spirv"}, "spirv": {"data", "cost"},
+    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost", "spirv", "rop"}, "spirv": {"data", "cost"},
                "rop": {"data", "cost"}},
     "traces": {"root": {"scenes"}, "scenes": {"root"}, "files": {"root"}}}
 STAGE_GROUP = {"data", "cost", "surface", "rop"}

@@ -58,7 +58,7 @@ void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& len
   }
 }
 
-// A pass of its own, or another order, is none that the API's order has.
+// A depth pre-pass, motion vectors and sorting have no place in it.
 bool keeps_api_order(const MsaaOptions& options) {
   return !options.prepass && !options.motion && !options.sorts_translucent;
 }

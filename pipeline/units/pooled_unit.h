@@ -22,6 +22,26 @@ inline std::vector<Surface> pooled_pixel_surfaces(int pool_bytes) {
   return surfaces;
 }
 
+// Charges what records beyond a pool on chip have moved: a chunk there takes a sector. Where the pool is in memory
+// itself, RecordMemory has its requests.
+inline void charge_spills(Bin& bin, const BinStage& stage, const ChunkPool& pool, const ChunkRequests& spills) {
+  const std::uint32_t bytes = bin.memory().sector_bytes;
+  Bin::KeptInMemory records{stage.counters.stage, pool.peak_in_memory() * bytes};
+  if (bin.models_memory() && bin.keeps_pixels_on_chip()) {
+    stage.moves_in_l2(spills.all() * bytes);
+    records.reads = spills.reads, records.writes = spills.writes;
+  }
+  bin.spills(records);
+}
+
+// Charges the depth planes and the records that composition has asked for.
+inline void charge_requests(Bin& bin, const BinStage& stage, const std::vector<DepthFetch>& fetched,
+                            const std::vector<RecordVisit>& visits, RecordMemory& records) {
+  for (const DepthFetch& fetch : fetched)
+    bin.triangle_fetches().depth(fetch.triangle, stage.counters, fetch.has_vertices);
+  for (const RecordVisit& visit : visits) records.access(visit, stage.counters);
+}
+
 struct RecordPool {
   int bytes_per_pixel;
   std::size_t most_owners = kMostOwners;  // of a pixel
@@ -71,7 +91,7 @@ class ComposePooledUnit {
     const std::vector<PixelColor> colors = finish_pooled(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     records_.flush(stage_.counters);
-    spill();
+    charge_spills(bin_, stage_, pixels_.pool, spills_);
     if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
     if (frame_pool_) {
       frame_pool_->add(claims_);
@@ -84,17 +104,6 @@ class ComposePooledUnit {
   }
 
  private:
-  // A chunk beyond the pool takes a sector. Where the pool is in memory itself, records_ has its requests.
-  void spill() {
-    const std::uint32_t bytes = bin_.memory().sector_bytes;
-    Bin::KeptInMemory records{stage_.counters.stage, pixels_.pool.peak_in_memory() * bytes};
-    if (bin_.models_memory() && bin_.keeps_pixels_on_chip()) {
-      stage_.moves_in_l2(spills_.all() * bytes);
-      records.reads = spills_.reads, records.writes = spills_.writes;
-    }
-    bin_.spills(records);
-  }
-
   // What holds for the whole bin, in each of its pixels.
   void report_pool() {
     const auto set = [&](const char* name, double value) {
@@ -116,9 +125,7 @@ class ComposePooledUnit {
   }
 
   void finish(const PooledResult& result, ShadeUnit& shade) {
-    for (const DepthFetch& fetch : result.fetched)
-      bin_.triangle_fetches().depth(fetch.triangle, stage_.counters, fetch.has_vertices);
-    for (const RecordVisit& visit : result.visits) records_.access(visit, stage_.counters);
+    charge_requests(bin_, stage_, result.fetched, result.visits, records_);
     spills_ += result.spills;
     shade.visible(result.shaded, result.decisions);
   }

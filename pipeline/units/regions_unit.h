@@ -48,7 +48,7 @@ class ComposeRegionsUnit {
         finish_regions(regions_, bin_.background(), stage_.timed(), pixels_, maps_, result);
     finish(result);
     records_.flush(stage_.counters);
-    spill();
+    charge_spills(bin_, stage_, pixels_.pool, spills_);
     if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
     bin_.triangle_fetches().flush(stage_.counters);
     const float of_pool = static_cast<float>(pixels_.pool.peak() * (kChunkBytes + pixels_.pool.link_bytes())) /
@@ -93,21 +93,8 @@ class ComposeRegionsUnit {
   }
 
   void finish(const RegionsResult& result) {
-    for (const DepthFetch& fetch : result.fetched)
-      bin_.triangle_fetches().depth(fetch.triangle, stage_.counters, fetch.has_vertices);
-    for (const RecordVisit& visit : result.visits) records_.access(visit, stage_.counters);
+    charge_requests(bin_, stage_, result.fetched, result.visits, records_);
     spills_ += result.spills;
-  }
-
-  // A chunk beyond the pool takes a sector. Where the pool is in memory itself, records_ has its requests.
-  void spill() {
-    const std::uint32_t bytes = bin_.memory().sector_bytes;
-    Bin::KeptInMemory records{stage_.counters.stage, pixels_.pool.peak_in_memory() * bytes};
-    if (bin_.models_memory() && bin_.keeps_pixels_on_chip()) {
-      stage_.moves_in_l2(spills_.all() * bytes);
-      records.reads = spills_.reads, records.writes = spills_.writes;
-    }
-    bin_.spills(records);
   }
 
   Bin& bin_;

@@ -1,5 +1,7 @@
 #include "pipeline/units/sample_places.h"
 
+#include <utility>
+
 namespace beampipe {
 
 CellPlace SamplePlaces::of(std::uint32_t triangle, std::size_t cell) const {
@@ -86,21 +88,22 @@ void SamplePlaces::add_quad_texels(const std::vector<SampleFragment>& fragments,
 std::vector<glm::vec4> SamplePlaces::shade_quads(const std::vector<SampleFragment>& fragments,
                                                  TexelRequests* texels) const {
   const SurfaceShader& shader = bin_.context.shader;
+  OfPrograms noted;
+  if (texels) noted = add_quad_texels_of_materials(fragments, *texels);
   struct Part {
     std::vector<Invocation> invocations;
     std::vector<std::size_t> numbers;  // of their fragments
   };
-  Part programs, others;
+  Part programs{std::move(noted.fragments), {}}, others;
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     const std::uint32_t triangle = fragments[i].triangle;
-    Part& part = !shader.is_flat(triangle) && shader.is_program(triangle) ? programs : others;
-    part.invocations.push_back(invocation(fragments[i]));
+    const bool is_program = !shader.is_flat(triangle) && shader.is_program(triangle);
+    Part& part = is_program ? programs : others;
     part.numbers.push_back(i);
+    if (!is_program || !texels) part.invocations.push_back(invocation(fragments[i]));
   }
-  if (texels) {  // programs run once for their colours and their texels, and helpers come after what is wanted
-    const std::vector<Invocation> helpers = add_quad_texels_of_materials(fragments, *texels).helpers;
-    programs.invocations.insert(programs.invocations.end(), helpers.begin(), helpers.end());
-  }
+  // Programs run once for their colours and their texels, and helpers come after what is wanted.
+  programs.invocations.insert(programs.invocations.end(), noted.helpers.begin(), noted.helpers.end());
   std::vector<glm::vec4> colors(fragments.size());
   const auto shade = [&](const Part& part, TexelRequests* of_part) {
     const std::vector<glm::vec4> found = shader.colors_and_alphas(part.invocations, of_part);

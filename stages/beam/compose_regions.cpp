@@ -79,13 +79,13 @@ class RegionComposer {
     if (&rule == rule_ && &stencil == stencil_) return;
     rule_ = &rule, stencil_ = &stencil;
     writes_color_ = rule.writes_color();
-    of_blend_ = region_costs::blend(rule);
+    of_blend_ = stored_color_cost(rule, 4);
     of_test_ = of_pass_ = of_depth_fail_ = of_fail_ = {};
     if (!rule.has_stencil) return;
-    of_test_ = region_costs::stencil_test(stencil);
-    of_pass_ = region_costs::stencil_operation(stencil.pass, stencil);
-    of_depth_fail_ = region_costs::stencil_operation(stencil.depth_fail, stencil);
-    of_fail_ = region_costs::stencil_operation(stencil.fail, stencil);
+    of_test_ = stencil_test_cost(stencil);
+    of_pass_ = stencil_operation_cost(stencil.pass, stencil);
+    of_depth_fail_ = stencil_operation_cost(stencil.depth_fail, stencil);
+    of_fail_ = stencil_operation_cost(stencil.fail, stencil);
   }
 
   void clear(const RopClear& what) {
@@ -124,10 +124,12 @@ class RegionComposer {
   }
 
   // Positions are taken apart where it matters which region has them.
-  void read_positions() {
+  void read_positions() { read_positions(pixel_->regions.size()); }
+  // Those of so many regions, which the pixel had.
+  void read_positions(std::size_t regions) {
     if (positions_read_) return;
     positions_read_ = true;
-    const std::uint32_t planes = planes_for(pixel_->regions.size());
+    const std::uint32_t planes = planes_for(regions);
     ++work.splits[planes];
     work.bytes_read += planes * pixels_.words * 4;
   }
@@ -316,19 +318,12 @@ class RegionComposer {
     regions.resize(kept);
     for (const Region& part : changed_) put(part);
     if (regions.size() > 1 && (cuts || regions.size() != before)) {
-      read_positions_for_cut(before);
+      read_positions(before);
       while (regions.size() > kMostRegions) merge_two();
       ++work.joins[regions.size()];
       work.bytes_written += planes_for(regions.size()) * pixels_.words * 4;
     }
     work.bytes_written += std::min(changed_.size(), kMostRegions) * kRegionBytes;
-  }
-
-  void read_positions_for_cut(std::size_t before) {
-    if (positions_read_) return;
-    positions_read_ = true;
-    ++work.splits[planes_for(before)];
-    work.bytes_read += planes_for(before) * pixels_.words * 4;
   }
 
   void change(Region& part, const Fragment& fragment, const glm::vec4& color) {
@@ -430,7 +425,7 @@ class RegionComposer {
     work.comparisons += pixel.regions.size();
     if (region.is_touched || region.area == 0) return;
     const RopRule& rule = bin_.rules.of(bin_.triangles, specks.triangle);
-    work.by_state += region_costs::blend(rule);
+    work.by_state += stored_color_cost(rule, 4);
     ++work.mixes;
     const float share = std::min(specks.area / static_cast<float>(region.area), 1.0f);
     const glm::vec4 now = stored_color(bin_.rules, rule, specks.color, region.color, stored);

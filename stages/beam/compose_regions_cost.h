@@ -11,7 +11,7 @@
 #include "stages/cost/counted_mask.h"
 #include "stages/cost/plane_cost.h"
 #include "stages/data/region_pixels.h"
-#include "stages/rop/rop_rules.h"
+#include "stages/rop/rop_cost.h"
 
 namespace beampipe {
 
@@ -34,36 +34,13 @@ struct RegionsWork {
   std::uint64_t pairs_compared = 0;                     // of regions that may be merged
   std::uint64_t mixes = 0;                              // of the colours of two regions
   std::uint64_t finished = 0;                           // regions that were added to their pixel
-  std::uint64_t finished_pixels = 0;
-  OperationCounts by_state{};                       // stencil tests and operations, and blending
-  std::uint64_t bytes_read = 0, bytes_written = 0;  // of words and records
+  OperationCounts by_state{};                           // stencil tests and operations, and blending
+  std::uint64_t bytes_read = 0, bytes_written = 0;      // of words and records
 };
 
 namespace region_costs {
 
 using Number = Counted<float>;
-
-inline OperationCounts stencil_test(const Stencil& stencil) {
-  return count_operations(
-      [&](OperationCounts& counts) { stencil_passes(stencil, Counted<std::uint32_t>(1u, counts)); });
-}
-inline OperationCounts stencil_operation(StencilOperation operation, const Stencil& stencil) {
-  return count_operations(
-      [&](OperationCounts& counts) { stencil_after(operation, stencil, Counted<std::uint32_t>(1u, counts)); });
-}
-
-// Of a region: its channels, to fp16 and, where they are read, from it.
-inline OperationCounts blend(const RopRule& rule) {
-  return count_operations([&](OperationCounts& counts) {
-    const Number one(1.0f, counts);
-    Number stored[4];
-    for (Number& channel : stored) channel = one;
-    const Number source[4] = {one, one, one, one};
-    for (int c = 0; rule.blend && c < 4; ++c) stored[c] = converted(one);
-    for (int c = 0; c < 4; ++c)
-      if (rule.color_mask >> c & 1) converted(rule.blend ? blended_channel(*rule.blend, c, source, stored) : one);
-  });
-}
 
 inline OperationCounts contest() {
   return count_operations([](OperationCounts& counts) {

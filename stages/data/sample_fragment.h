@@ -55,6 +55,13 @@ struct SampleFragment {
   std::uint32_t mask;      // bit s: the triangle covers sample s of the pattern; not 0
 };
 
+// The fragment's cell in the tile: pixel (row by row) x cells per pixel + cell within the pixel.
+inline std::uint32_t cell_number(const SampleFragment& fragment, const Tile& tile, const CellGrid& grid) {
+  const std::size_t pixel = tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
+  return static_cast<std::uint32_t>(pixel) * static_cast<std::uint32_t>(grid.cells_per_pixel()) +
+         static_cast<std::uint32_t>(grid.in_pixel(fragment.x, fragment.y));
+}
+
 // Size in the modelled machine: a pair with a 16-bit coverage mask.
 inline constexpr std::uint64_t kSampleFragmentBytes = kPairBytes + 2;
 

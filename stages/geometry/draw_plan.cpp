@@ -7,6 +7,7 @@
 #include "simd/vertex_transform.h"
 #include "stages/geometry/depth_order.h"
 #include "stages/geometry/draw_geometry.h"
+#include "stages/rop/rop_rules.h"
 
 namespace beampipe {
 namespace {
@@ -30,12 +31,6 @@ bool replaces_where_opaque(const Blend& blend) {
 
 bool writes_color(const DrawState& state) {
   return (state.color_mask & kColorChannels) != 0 && !(state.blend && keeps_color(*state.blend));
-}
-
-bool writes_stencil(const std::optional<Stencil>& stencil) {
-  return stencil && stencil->write_mask != 0 &&
-         (stencil->fail != StencilOperation::keep || stencil->depth_fail != StencilOperation::keep ||
-          stencil->pass != StencilOperation::keep);
 }
 
 // A side in 1/256 px, at most as far away as the frame's. `end`: of the frame, in pixels.
@@ -129,7 +124,7 @@ class Planner {
       return false;
     }
     if (!writes_color(state)) {
-      if (!is_pre_pass(state) && writes_stencil(state.stencil)) leave_out(draw, "stencil without colour");
+      if (!is_pre_pass(state) && rop_rule(state).writes_stencil()) leave_out(draw, "stencil without colour");
       return false;
     }
     if (state.blend) {

@@ -22,7 +22,9 @@ bool writes(const Stencil& stencil) {
   return stencil.write_mask != 0 && (stencil.fail != kKeep || stencil.depth_fail != kKeep || stencil.pass != kKeep);
 }
 
-RopRule rule_of(const DrawState& state) {
+}  // namespace
+
+RopRule rop_rule(const DrawState& state) {
   RopRule rule;
   rule.depth = state.depth.test ? state.depth.function : Compare::always;
   rule.writes_depth = state.depth.test && state.depth.write;
@@ -37,8 +39,6 @@ RopRule rule_of(const DrawState& state) {
   rule.front_is_clockwise = state.front_is_clockwise;
   return rule;
 }
-
-}  // namespace
 
 bool RopRule::writes_stencil() const { return has_stencil && (writes(stencil[0]) || writes(stencil[1])); }
 
@@ -58,7 +58,7 @@ RopRules::RopRules(const Trace& trace, const Frame& frame, const glm::vec3& back
     const DrawState& state = draw.state;
     if (state.depth.cleared_before || state.stencil_cleared_to)
       clears.push_back({i, state.depth.cleared_before, state.stencil_cleared_to});
-    RopRule rule = rule_of(state);
+    RopRule rule = rop_rule(state);
     draws.push_back({rule, rule});
     if (!state.blend && !draw.program) draws.back()[1].blend = kOver, draws.back()[1].writes_depth = false;
   }

@@ -36,6 +36,9 @@ struct RopRule {
   bool operator==(const RopRule&) const = default;
 };
 
+// Of a draw whose materials are not blended.
+RopRule rop_rule(const DrawState& state);
+
 // What is cleared right before a draw, in the whole frame.
 struct RopClear {
   std::uint32_t draw = 0;  // index into Frame::draws
@@ -59,8 +62,8 @@ struct RopRules {
     return draws[triangles.draws[triangle]][is_blended ? 1 : 0];
   }
 
-  // Calls clear(RopClear) for each clear after draw `last` up to draw `next`. `at`: the first that may be one of them,
-  // and afterwards the first that is not.
+  // Calls clear(RopClear) for what is cleared before draw `next`, from clear number `at` on, which becomes that of the
+  // first clear after it.
   template <class Clear>
   void clear_before(std::uint32_t next, std::size_t& at, Clear&& clear) const {
     for (; at < clears.size() && clears[at].draw <= next; ++at) clear(clears[at]);

@@ -26,8 +26,7 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
   for (std::size_t i = 0; i < fragments.list.size(); ++i) {
     const SampleFragment& fragment = fragments.list[i];
     const std::size_t pixel = tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
-    const auto cell = static_cast<std::uint32_t>(pixel) * static_cast<std::uint32_t>(grid.cells_per_pixel()) +
-                      static_cast<std::uint32_t>(grid.in_pixel(fragment.x, fragment.y));
+    const std::uint32_t cell = cell_number(fragment, tile, grid);
     const CellPlane<float> plane =
         cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
     const glm::vec4 color = shader.color_and_alpha(fragment.triangle, static_cast<std::uint32_t>(pixel),

@@ -3,8 +3,8 @@
 #include <bit>
 
 #include "stages/data/sample_tile.h"
+#include "stages/rop/rop_cost.h"
 #include "stages/rop/stored_color.h"
-#include "stages/samples/ordered_blend_cost.h"
 
 namespace beampipe {
 
@@ -12,7 +12,8 @@ void ordered_blend(const SampledTriangles& in, const RopRules& rules, const Colo
                    StageCounters& counters, OrderedTile& surface, std::vector<OrderedAccess>& accesses) {
   const auto& [triangles, tile, sampling] = in;
   const CellGrid& grid = sampling.grid;
-  const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  const auto samples = static_cast<std::size_t>(sampling.pattern.count),
+             cells = static_cast<std::size_t>(grid.cells_per_pixel());
   const int channels = surface.color_bytes == kSampleColorBytes ? 3 : 4;
   const RopRule* last = nullptr;
   OperationCounts cost;  // of a sample
@@ -20,12 +21,10 @@ void ordered_blend(const SampledTriangles& in, const RopRules& rules, const Colo
   for (std::size_t i = 0; i < fragments.list.size(); ++i) {
     const SampleFragment& fragment = fragments.list[i];
     const RopRule& rule = rules.of(triangles, fragment.triangle);
-    if (&rule != last) last = &rule, cost = ordered_blend_cost(rule, channels);
-    const std::size_t pixel = tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
-    const std::uint32_t cell = static_cast<std::uint32_t>(pixel) * static_cast<std::uint32_t>(grid.cells_per_pixel()) +
-                               static_cast<std::uint32_t>(grid.in_pixel(fragment.x, fragment.y));
-    PixelObserver* const observer = observer_at(surface.observers, pixel);
-    const std::size_t first = surface.first_observed + cell * samples - pixel * surface.samples_per_pixel;
+    if (&rule != last) last = &rule, cost = stored_color_cost(rule, channels);
+    const std::uint32_t cell = cell_number(fragment, tile, grid);
+    PixelObserver* const observer = observer_at(surface.observers, cell / cells);
+    const std::size_t first = surface.first_observed + cell % cells * samples;
     for (std::uint32_t rest = fragment.mask; rest != 0; rest &= rest - 1) {
       const auto s = static_cast<std::size_t>(std::countr_zero(rest));
       const std::size_t at = cell * samples + s;

@@ -1,7 +1,9 @@
 #include "stages/samples/ordered_test.h"
 
 #include <algorithm>
+#include <bit>
 
+#include "simd/depth_compare.h"
 #include "stages/samples/ordered_test_cost.h"
 
 namespace beampipe {
@@ -44,9 +46,11 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
   const auto& [triangles, tile, sampling] = in;
   const CellGrid& grid = sampling.grid;
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
-  const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  const auto samples = static_cast<std::size_t>(sampling.pattern.count),
+             cells = static_cast<std::size_t>(grid.cells_per_pixel());
   RuleTally tally(counters);
   accesses.clear();
+  counters.ops += cell_plane_cost() * fragments.size();
   std::size_t left = 0;
   for (const SampleFragment& fragment : fragments) {
     rules.clear_before(triangles.draws[fragment.triangle], surface.next_clear,
@@ -55,9 +59,7 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
     const SetupTriangle& triangle = triangles.triangles[fragment.triangle];
     const Stencil& stencil = rule.stencil_of(triangle);
     TestedSamples& count = tally.start(rule, stencil);
-    const auto pixel = static_cast<std::uint32_t>(tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
-    const std::uint32_t cell = pixel * static_cast<std::uint32_t>(grid.cells_per_pixel()) +
-                               static_cast<std::uint32_t>(grid.in_pixel(fragment.x, fragment.y));
+    const std::uint32_t cell = cell_number(fragment, tile, grid);
     const CellPlane<float> plane = cell_plane(triangle.depth, fragment.x * cell_width, fragment.y * cell_height);
     std::uint32_t passed = 0, written = 0;
     for (std::uint32_t rest = fragment.mask; rest != 0; rest &= rest - 1) {
@@ -75,9 +77,10 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
         update(stencil.fail);
         continue;
       }
-      const float depth = std::clamp(plane.z + plane.dzdx * static_cast<float>(sampling.pattern.x[s]) +
-                                         plane.dzdy * static_cast<float>(sampling.pattern.y[s]),
-                                     -1.0f, 0.0f);
+      float depth = 0;
+      depth_test_scalar(plane, static_cast<float>(sampling.pattern.x[s]), static_cast<float>(sampling.pattern.y[s]),
+                        0.0f, depth);
+      depth = std::clamp(depth, -1.0f, 0.0f);
       if (!passes(rule.depth, depth, surface.depth[at])) {
         ++count.depth_failed;
         update(stencil.depth_fail);
@@ -92,7 +95,6 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
     }
     const std::uint32_t read = rule.tests() ? fragment.mask : 0;
     const auto number_of = [](std::uint32_t mask) { return static_cast<std::uint64_t>(std::popcount(mask)); };
-    counters.ops += cell_plane_cost();
     counters.items_in += number_of(fragment.mask);
     counters.items_out += number_of(passed);
     counters.lanes_used += number_of(fragment.mask);
@@ -100,9 +102,10 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
     counters.bytes_read += kSampleFragmentBytes + number_of(read) * kSampleDepthBytes;
     counters.bytes_written += number_of(written) * kSampleDepthBytes;
     if (read != 0 || written != 0) accesses.push_back({cell, fragment.triangle, read, written});
+    const std::size_t pixel = cell / cells;
     if (PixelObserver* const observer = observer_at(surface.observers, pixel))
-      observer->contends(fragment.triangle, surface.first_observed + cell * samples - pixel * surface.samples_per_pixel,
-                         fragment.mask & ~passed, 0);
+      observer->contends(fragment.triangle, surface.first_observed + cell % cells * samples, fragment.mask & ~passed,
+                         0);
     if (passed == 0 || !rule.writes_color()) continue;
     fragments[left] = fragment;
     fragments[left++].mask = passed;

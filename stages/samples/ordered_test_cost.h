@@ -1,10 +1,8 @@
 // What ordered_test is charged.
 #pragma once
 
-#include "stages/cost/counting.h"
 #include "stages/data/sample_tile.h"
-#include "stages/rop/rop_formulas.h"
-#include "stages/rop/rop_rules.h"
+#include "stages/rop/rop_cost.h"
 #include "stages/samples/sample_depth_cost.h"
 
 namespace beampipe {
@@ -14,17 +12,10 @@ struct TestedSamples {
   std::uint64_t tested = 0, stencil_failed = 0, depth_failed = 0, passed = 0;
 };
 
-inline OperationCounts stencil_operation_cost(StencilOperation operation, const Stencil& stencil) {
-  return count_operations(
-      [&](OperationCounts& counts) { stencil_after(operation, stencil, Counted<std::uint32_t>(1u, counts)); });
-}
-
 inline OperationCounts ordered_test_cost(const RopRule& rule, const Stencil& stencil, const TestedSamples& samples) {
   OperationCounts ops;
   if (rule.has_stencil) {
-    ops += count_operations(
-               [&](OperationCounts& counts) { stencil_passes(stencil, Counted<std::uint32_t>(1u, counts)); }) *
-           samples.tested;
+    ops += stencil_test_cost(stencil) * samples.tested;
     ops += stencil_operation_cost(stencil.fail, stencil) * samples.stencil_failed;
     ops += stencil_operation_cost(stencil.depth_fail, stencil) * samples.depth_failed;
     ops += stencil_operation_cost(stencil.pass, stencil) * samples.passed;

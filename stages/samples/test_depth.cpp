@@ -23,9 +23,8 @@ void set_items(const SampledTriangles& in, const SampleFragment* fragments, std:
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
   for (std::size_t i = 0; i < count; ++i) {
     const SampleFragment& fragment = fragments[i];
-    const auto pixel = static_cast<std::int32_t>(in.tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
     CellDepth& item = block.items[i];
-    item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));
+    item.cell = cell_number(fragment, in.tile, grid);
     item.mask = fragment.mask;
     item.triangle = fragment.triangle;
     item.plane =

@@ -37,7 +37,8 @@ struct ShaderCounts {
 
 class ShaderExecutor {
  public:
-  // A lane is stopped after about so many lane operations, ways out of blocks and values that phis take.
+  // A lane is stopped after about so many lane operations, ways out of blocks and values that phis take; an image that
+  // is read counts as many.
   static constexpr std::uint32_t kMostSteps = 1u << 20;
 
   // The program must outlive it.

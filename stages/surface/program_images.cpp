@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "stages/data/half_bits.h"
+#include "stages/rop/rop_formulas.h"
 #include "stages/surface/ellipse_filter.h"
 #include "stages/surface/mip_chain.h"
 
@@ -147,28 +148,6 @@ std::int64_t wrapped(SamplerWrap wrap, std::int64_t place, std::int64_t size) {
       return std::clamp<std::int64_t>(mirrored(place), 0, size - 1);
   }
   return 0;
-}
-
-bool passes(Compare function, float reference, float texel) {
-  switch (function) {
-    case Compare::never:
-      return false;
-    case Compare::less:
-      return reference < texel;
-    case Compare::equal:
-      return reference == texel;
-    case Compare::less_equal:
-      return reference <= texel;
-    case Compare::greater:
-      return reference > texel;
-    case Compare::not_equal:
-      return reference != texel;
-    case Compare::greater_equal:
-      return reference >= texel;
-    case Compare::always:
-      return true;
-  }
-  return false;
 }
 
 // log2(square) / 2, between powers of two a straight line: at most 0.043 too little. Mesa's drivers choose levels with

@@ -34,7 +34,7 @@ struct ProgramPlace {
 
 class ProgramShader {
  public:
-  static constexpr float kDiscarded = -1;
+  static constexpr float kDiscarded = -1;  // in place of alpha
 
   // All must outlive it. `programs`: of the trace; may be null if no draw has one.
   ProgramShader(const SetupTriangles& triangles, const Trace& trace, const Frame& frame, const ProgramSet* programs);
@@ -43,9 +43,8 @@ class ProgramShader {
 
   // Sets the colour of each place. Alpha is that of the shader in the API's order and where the draw is blended, and
   // else 1; it is kDiscarded where the shader discards. A place that is_there then has the colour of one that is not
-  // discarded, a quarter of a pixel away, if there is one. The places
-  // lie in triangles of one draw. Adds the texels that their invocations read, without helpers, to `texels`, whose open
-  // request ends.
+  // discarded, a quarter of a pixel away, if there is one. The places lie in triangles of one draw. Adds the texels
+  // that their invocations read, without helpers, to `texels`, whose open request ends.
   void shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels = nullptr) const;
 
   // What an invocation costs, helpers of its own left out: the mean over places in up to 16 of the draw's triangles,
