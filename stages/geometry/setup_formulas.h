@@ -36,9 +36,15 @@ Real limited_bias(Real bias, Real nearest, Real farthest, Real window_offset, Re
   return lesser(greater(bias, towards_viewer), away);
 }
 
+// Of a plane through p, at another place.
+template <class Real>
+Real value_beside(const ScreenVertex<Real>& p, const Slopes<Real>& slopes, Real x, Real y) {
+  return p.z + slopes.dzdx * (x - p.x) + slopes.dzdy * (y - p.y);
+}
+
 // Twice the signed area; positive if the vertices are clockwise with y down.
-template <class Int>
-Int doubled_area(const std::array<Int, 3>& x, const std::array<Int, 3>& y) {
+template <class Number>
+Number doubled_area(const std::array<Number, 3>& x, const std::array<Number, 3>& y) {
   return (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
 }
 

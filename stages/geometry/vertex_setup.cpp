@@ -212,18 +212,39 @@ struct ScreenCorner {
   double second, third;
 };
 
-BarycentricPlanes<float> barycentric_planes(const std::array<ScreenCorner, 3>& corners) {
+// On the screen, in pixels.
+using CornerPlaces = std::array<glm::dvec2, 3>;
+
+CornerPlaces snapped_places(const std::array<ScreenCorner, 3>& corners) {
+  CornerPlaces places;
+  for (std::size_t k = 0; k < 3; ++k) places[k] = {corners[k].vertex.screen.x, corners[k].vertex.screen.y};
+  return places;
+}
+
+// As they were before they were snapped, unless they then have less area than any that were snapped.
+CornerPlaces unsnapped_places(const std::array<ScreenCorner, 3>& corners, const VertexTransform& transform) {
+  CornerPlaces places;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const ScreenVertex<double> at = project<double>(corners[k].vertex.clip, transform.width, transform.height);
+    places[k] = {at.x, at.y};
+  }
+  const double area2 =
+      doubled_area<double>({places[0].x, places[1].x, places[2].x}, {places[0].y, places[1].y, places[2].y});
+  constexpr double kLeast = 1.0 / (kSubpixelUnits * kSubpixelUnits);
+  return std::abs(area2) >= kLeast ? places : snapped_places(corners);
+}
+
+// The planes have the first corner's snapped place as their anchor.
+BarycentricPlanes<float> barycentric_planes(const std::array<ScreenCorner, 3>& corners, const CornerPlaces& places) {
   const double w = std::min({corners[0].vertex.clip.w, corners[1].vertex.clip.w, corners[2].vertex.clip.w});
+  const ScreenVertex<double>& anchor = corners[0].vertex.screen;
   // From the values of a plane at the corners, times w of the corner.
   const auto plane = [&](const std::array<double, 3>& values) {
     std::array<ScreenVertex<double>, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const ProjectedVertex& vertex = corners[k].vertex;
-      p[k] = {vertex.screen.x, vertex.screen.y, values[k] * (w / vertex.clip.w)};
-    }
+    for (std::size_t k = 0; k < 3; ++k) p[k] = {places[k].x, places[k].y, values[k] * (w / corners[k].vertex.clip.w)};
     const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
-    return ScreenPlane<float>{static_cast<float>(p[0].z), static_cast<float>(slopes.dzdx),
-                              static_cast<float>(slopes.dzdy)};
+    return ScreenPlane<float>{static_cast<float>(value_beside(p[0], slopes, anchor.x, anchor.y)),
+                              static_cast<float>(slopes.dzdx), static_cast<float>(slopes.dzdy)};
   };
   return {plane({1, 1, 1}), plane({corners[0].second, corners[1].second, corners[2].second}),
           plane({corners[0].third, corners[1].third, corners[2].third})};
@@ -461,7 +482,9 @@ class TriangleSetup {
     }
     surface.anchor_x = static_cast<float>(corners[0].vertex.screen.x);
     surface.anchor_y = static_cast<float>(corners[0].vertex.screen.y);
-    surface.planes = barycentric_planes(corners);
+    work_.unsnapped += has_program;
+    surface.planes = barycentric_planes(
+        corners, has_program ? unsnapped_places(corners, screen_.transform) : snapped_places(corners));
     return surface;
   }
 

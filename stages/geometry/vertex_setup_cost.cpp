@@ -146,6 +146,15 @@ OperationCounts surface_cost() {
   });
 }
 
+// The area of corners that are not snapped, and three planes' values at the snapped corner.
+OperationCounts unsnapped_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    static_cast<void>(magnitude(doubled_area<CountedReal>({x, x, x}, {x, x, x})) < x);
+    for (int plane = 0; plane < 3; ++plane) static_cast<void>(value_beside<CountedReal>({x, x, x}, {x, x}, x, x));
+  });
+}
+
 // Edges of the triangle in space and in texture coordinates, and a unit vector.
 OperationCounts tangent_cost() {
   return count_operations([](OperationCounts& counts) {
@@ -178,6 +187,7 @@ void charge(const SetupWork& work, StageCounters& counters) {
   counters.ops += vertex_vector_cost() * work.vertex_vectors;
   counters.ops += surface_cost() * work.surfaces;
   counters.ops += tangent_cost() * work.tangents;
+  counters.ops += unsnapped_cost() * work.unsnapped;
 }
 
 }  // namespace beampipe

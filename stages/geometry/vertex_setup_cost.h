@@ -11,6 +11,7 @@ struct SetupWork {
   std::uint64_t normals = 0;
   std::uint64_t transformed_homogeneous = 0, placed = 0, biased = 0;                  // of draws with state
   std::uint64_t shaded_vertices = 0, vertex_vectors = 0, surfaces = 0, tangents = 0;  // of draws with materials
+  std::uint64_t unsnapped = 0;                                                        // surfaces of programs
   std::uint64_t triangles = 0;                                                        // setup triangles that were made
 
   SetupWork& operator+=(const SetupWork& other) {
@@ -19,7 +20,7 @@ struct SetupWork {
     normals += other.normals, triangles += other.triangles;
     transformed_homogeneous += other.transformed_homogeneous, placed += other.placed, biased += other.biased;
     shaded_vertices += other.shaded_vertices, vertex_vectors += other.vertex_vectors;
-    surfaces += other.surfaces, tangents += other.tangents;
+    surfaces += other.surfaces, tangents += other.tangents, unsnapped += other.unsnapped;
     return *this;
   }
 };
