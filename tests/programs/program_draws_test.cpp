@@ -76,6 +76,41 @@ TEST(ProgramDraws, InputsAreInPerspective) {
   expect_picture(scene.trace, "msaa:1", [](auto x, auto y) { return glm::vec3(0, x + y < kSide - 1 ? 0 : 1, 1); });
 }
 
+// In clip space, of a place on the picture, in pixels and in 1/256 px beyond.
+glm::vec4 in_clip_space(double side, double x, double y, double beyond_x, double beyond_y) {
+  return {2 * (x + beyond_x / 256) / side - 1, 1 - 2 * (y + beyond_y / 256) / side, 0, 1};
+}
+
+// What the vertices carry is 1/2 + 16 (x - 8 1/2), where they are before they are snapped to 1/256 px. Of snapped ones
+// the middle of column 8 would have 1/40 more.
+TEST(ProgramDraws, InputsBelongToVerticesThatAreNotSnapped) {
+  constexpr std::uint32_t kSide = 16;
+  constexpr double kBeyond = 0.4;
+  ProgramTrace scene(kSide, kSide, ShaderParts{.body = kStoreA});
+  std::vector<ProgramVertex> corners;
+  for (const double y : {-1.0, 17.0})
+    for (const double x : {7.0, 10.0})
+      corners.push_back({in_clip_space(kSide, x, y, kBeyond, kBeyond),
+                         {static_cast<float>(0.5 + 16 * (x + kBeyond / 256 - 8.5)), 0, 0, 1}});
+  scene.add_quad(corners);
+  for (const char* spec : {"msaa:1", "visibility", "deferred"})
+    expect_picture(scene.trace, spec, [](auto x, auto) { return x == 8 ? glm::vec3(0.5f, 0, 0) : glm::vec3(NAN); });
+}
+
+// Before they are snapped, the vertices lie on a line, where no plane goes through what they carry. Snapped ones have
+// 1/4 + x / 16 between the first two, on which the middles of four pixels lie.
+TEST(ProgramDraws, InputsOfATriangleThatOnlySnappingMakesWide) {
+  constexpr std::uint32_t kSide = 16;
+  ProgramTrace scene(kSide, kSide, ShaderParts{.body = kStoreA});
+  scene.add_quad({{in_clip_space(kSide, 0, 8.5, 0, 0.2), {0.25f, 0, 0, 1}},
+                  {in_clip_space(kSide, 4, 8.5, 0, 0.4), {0.5f, 0, 0, 1}},
+                  {in_clip_space(kSide, 8, 8.5, 0, 0.6), {0.75f, 0, 0, 1}},
+                  {in_clip_space(kSide, 8, 8.5, 0, 0.6), {0.75f, 0, 0, 1}}});
+  expect_picture(scene.trace, "msaa:1", [](auto x, auto y) {
+    return y == 8 && x < 4 ? glm::vec3(0.25f + (static_cast<float>(x) + 0.5f) / 16, 0, 0) : glm::vec3(NAN);
+  });
+}
+
 const ShaderParts kTextured{.body = R"(
 %i_ = OpLoad %sampled2 %texture
 %uv = OpVectorShuffle %v2 %va %va 0 1
