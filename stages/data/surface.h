@@ -83,7 +83,7 @@ struct SetupSurface {
   bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used
   glm::vec4 tangent{0.0f};           // of the triangle, w: sign of the bitangent; where a normal texture needs it
   float anchor_x = 0, anchor_y = 0;  // pixels, frame coordinates
-  BarycentricPlanes<float> planes;
+  BarycentricPlanes<float> planes;   // through snapped corners, or of programs through those that are not snapped
 };
 
 // Size in the modelled machine: three planes, which have the depth plane's anchor, the material, and the numbers of

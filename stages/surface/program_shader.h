@@ -1,8 +1,11 @@
 // Runs the fragment shaders of draws with a program, with what each draw binds.
 //
-// Inputs come from Mesh::varyings, of the triangle's planes. Derivatives are per pixel, whatever part of it a colour
-// stands for: differences between a pixel and its neighbours in a 2x2 quad, or between a place and those one pixel to
-// the right and below, from the planes. These two are helper invocations, which cost as much as others.
+// Inputs come from Mesh::varyings, of planes through the vertices as they were before they were snapped, as Mesa's
+// software driver has them: snapped ones are up to 1/512 px beside their place, which in a triangle of a pixel is much.
+//
+// Derivatives are per pixel, whatever part of it a colour stands for: differences between a pixel and its neighbours in
+// a 2x2 quad, or between a place and those one pixel to the right and below, from the planes. These two are helper
+// invocations, which cost as much as others.
 //
 // Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point, and
 // all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1.
