@@ -1,4 +1,5 @@
 // Tests and blending of samples in the API's order, by hand.
+#include "stages/data/sample_tile.h"
 #include "stages/samples/ordered_blend.h"
 #include "stages/samples/ordered_test.h"
 #include "tests/stages/screen_triangles.h"
