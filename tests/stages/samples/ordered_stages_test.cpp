@@ -122,6 +122,52 @@ TEST(OrderedTest, CountsStencils) {
   EXPECT_EQ(more.bit - with.bit, 2u * 3);
 }
 
+// What may write a word but has no bit to write leaves it alone.
+TEST(OrderedTest, MaskedStencilsWriteNothing) {
+  Draws draws;
+  DrawState& state = draws.add(-0.5f);
+  state.depth.test = false;
+  state.stencil = Stencil{.reference = 9, .write_mask = 0, .pass = StencilOperation::replace};
+  const Tested found(draws);
+  ASSERT_EQ(found.accesses.size(), 1u);
+  EXPECT_EQ(found.accesses[0].read, 3u);
+  EXPECT_EQ(found.accesses[0].written, 0u);
+  EXPECT_EQ(found.counters.bytes_written, 0u);
+}
+
+// Both samples fail: nobody computes their depth, or what passes would store. The plane takes two differences and two
+// sums.
+TEST(OrderedTest, WhatFailsCostsNoMore) {
+  Draws draws;
+  draws.add(-0.5f).stencil = Stencil{.function = Compare::never, .pass = StencilOperation::increment};
+  EXPECT_EQ(Tested(draws).counters.ops.add, 4u);
+}
+
+// Two triangles of one draw: only samples of the second one, a back face, are counted up.
+TEST(OrderedTest, EachFaceHasItsCosts) {
+  Draws draws;
+  DrawState& state = draws.add(-0.5f);
+  state.depth.test = false;
+  add_everywhere(draws.triangles, -0.5f);
+  draws.triangles.draws.push_back(0);
+  draws.triangles.triangles[0].front = true, draws.triangles.triangles[1].front = false;
+  draws.fragments.push_back({1, 1, 1, 0, 3});
+  const OperationCounts without = Tested(draws).counters.ops;
+  state.stencil = Stencil{.function = Compare::equal}, state.stencil_back = state.stencil;
+  state.stencil_back->pass = StencilOperation::increment;
+  const OperationCounts with = Tested(draws).counters.ops;
+  EXPECT_EQ(with.add - without.add, 4u + 2 * 2);
+  EXPECT_EQ(with.bit - without.bit, 4u + 2 * 3);
+}
+
+TEST(OrderedTest, ClearsOfStencilsKeepDepth) {
+  Draws draws;
+  draws.add(-0.75f), draws.add(-0.5f).stencil_cleared_to = 4;
+  const Tested found(draws);
+  EXPECT_EQ(found.left.size(), 1u);
+  EXPECT_EQ(found.surface.depth[2], -0.75f);
+}
+
 TEST(OrderedTest, ClearsComeBeforeTheirDraw) {
   Draws draws;
   draws.add(-0.75f).stencil = Stencil{.reference = 1, .pass = StencilOperation::replace};
@@ -204,6 +250,7 @@ TEST(OrderedBlend, LimitsAndRoundsColors) {
 // Two samples. Opaque: four conversions each. Blended: four more from the stored format, and a sum for each channel.
 TEST(OrderedBlend, CountsItsWork) {
   Draws draws;
+  draws.frame.draws.reserve(2);
   DrawState& state = draws.add(0);
   const Blended opaque(draws, {glm::vec4(1)});
   EXPECT_EQ(opaque.counters.ops, (OperationCounts{.convert = 8}));
@@ -217,6 +264,10 @@ TEST(OrderedBlend, CountsItsWork) {
   EXPECT_EQ(blended.counters.bytes_read, kSampleFragmentBytes + 16);
   const Blended rgb(draws, {glm::vec4(1)}, kSampleColorBytes);
   EXPECT_EQ(rgb.counters.ops, (OperationCounts{.add = 6, .convert = 12})) << "three channels";
+  state.blend.reset(), state.color_mask = kGreenChannel;
+  EXPECT_EQ(Blended(draws, {glm::vec4(1)}).counters.ops, (OperationCounts{.convert = 2})) << "one channel";
+  draws.add(0).blend = Blend{{BlendFactor::one, BlendFactor::one}, {}, {}};
+  EXPECT_EQ(Blended(draws, {glm::vec4(1), glm::vec4(1)}).counters.ops, (OperationCounts{.add = 8, .convert = 2 + 16}));
 }
 
 }  // namespace beampipe::ordered_stages_test
