@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Breaks the program in one place after the other and tells which test notices: tests/mutation.sh [BUILD FOLDER [FILE...]]
-# Works on this tree, one mutant at a time, in all files or in those that are named, and restores each file. Ends with an
-# error if no test notices a mutant.
+# Breaks the program in one place after the other and tells which test notices.
+#   tests/mutation.sh [BUILD FOLDER [FILE...]]   all mutants, or those in the files that are named
+#   tests/mutation.sh --check                    only looks whether the code still has what is to be broken
+#
+# Works on this tree, one mutant at a time, and restores each file: a clone of its own is best, with a compiler cache.
+# BUILD FOLDER/mutants.txt gets a line for each mutant. A later run goes on: it leaves out those that were noticed.
+# Ends with an error if no test notices a mutant.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build=${1:-build/release}
-only=" ${*:2} "
 mutants=(  # file | text as it is | broken
   'simd/lanes-inl.h|LANES_COMPARISON(<=, Le)|LANES_COMPARISON(<=, Lt)'
   'simd/lanes-inl.h|LANES_BINARY(-, Sub)|LANES_BINARY(-, Add)'
@@ -30,7 +32,7 @@ mutants=(  # file | text as it is | broken
   'simd/sample_mask.cpp|kSmallSlope = 1 << 20|kSmallSlope = 1 << 25'
   'simd/mask_table.cpp|kTableDistances / 2)|kTableDistances / 2 + 1)'
   'simd/mask_table-inl.h|Float(kTableDistances / 2)|Float(kTableDistances / 2 + 1)'
-  'simd/mask_table-inl.h|kTableDistances - 1) - column|kTableDistances) - column'
+  'simd/mask_table-inl.h|select(is_flipped, ~word, word)|select(is_flipped, word, ~word)'
   'simd/mask_table-inl.h|mask = mask & word|mask = word'
   'simd/merge-inl.h|bits(32.0f)|bits(31.0f)'
   'simd/merge-inl.h|gap.z - half_thickness|gap.z + half_thickness'
@@ -40,7 +42,7 @@ mutants=(  # file | text as it is | broken
   'simd/merge-inl.h|farthest + farthest|farthest'
   'simd/merge-inl.h|moved + moved|moved'
   'simd/merge-inl.h|rest * fragment.surface.alpha|fragment.surface.alpha'
-  'simd/merge-inl.h|slab.i + slab.a * slab.open_i|slab.i + slab.a'
+  'simd/merge-inl.h|(over.i + over.a) / greater|(over.i + slab.a) / greater'
   'simd/merge-inl.h|greater(sums.a, zero)}|sums.a}'
   'simd/merge-inl.h|select(flipped != turns|select(flipped'
   'simd/merge-inl.h|select(how.tiny, region.a, left)|region.a'
@@ -53,7 +55,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/specks.h|kSpeckShares = 4.0f|kSpeckShares = 1.0f'
   'stages/beam/compose_beam.cpp|votes / 3.0f|votes / 2.0f'
   'stages/beam/beam_fragment.h|kZeroArea = 5e-7f|kZeroArea = 5e-5f'
-  'stages/raster/reference_raster.cpp|2 * reversed + 1|2 * reversed'
+  'stages/raster/reference_raster.cpp|return {2 * shift + 1,|return {2 * shift,'
   'simd/vertex_transform-inl.h|Real(double{kSubpixelUnits}) + Real(0.5)|Real(double{kSubpixelUnits}) + Real(0.25)'
   'simd/vertex_transform-inl.h|v.w > Real(0.0)|v.w >= Real(0.0)'
   'simd/vertex_transform-inl.h|magnitude(v.x) <= v.w|magnitude(v.x) < v.w'
@@ -85,7 +87,8 @@ mutants=(  # file | text as it is | broken
   'stages/surface/texture_filter.h|plan.level + 1 < chain.levels.size()|plan.level + 2 < chain.levels.size()'
   'stages/surface/surface_shader.cpp|batches[current].work != work) {|false) {'
   'stages/surface/surface_shader.cpp|if (!inputs && !is_kept) continue;|if (!inputs) continue;'
-  'stages/surface/surface_shader.cpp|points[texture.uv_set];|points[0];'
+  'stages/surface/surface_shader.cpp|[uv, slopes] = points[texture.uv_set];|[uv, slopes] = points[0];'
+  'stages/surface/surface_shader.cpp|at = points[texture.uv_set];|at = points[0];'
   'stages/surface/texture_filter.h|for (int i = 0; i < 2; ++i) texel -=|for (int i = 0; i < 1; ++i) texel -='
   'stages/beam/compose_pooled_colors-inl.h|shaded_at_[first_shaded_[pixel] + k]|shaded_at_[first_shaded_[pixel]]'
   'stages/picture/resolve.cpp|run.begin / samples_per_cell|run.begin'
@@ -114,7 +117,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/owner_rules.h|plane.z - reach > watermark|plane.z > watermark'
   'stages/beam/owner_rules.h|plane.z + reach <= watermark|plane.z <= watermark'
   'stages/beam/compose_pooled.cpp|place.fraction <= order_[j - 1].fraction|place.fraction >= order_[j - 1].fraction'
-  'stages/beam/compose_pooled.cpp|std::max(one, other) - std::min(one, other)|0 * (one + other)'
+  'stages/beam/owner_rules.h|greater(one, other) - lesser(one, other)|lesser(one, other) - lesser(one, other)'
   'stages/beam/compose_pooled.cpp|one.visible >= other.visible ? one : other|one.visible >= other.visible ? other : one'
   'stages/beam/compose_pooled.cpp|fragment.triangle < bin_.list|fragment.triangle > bin_.list'
   'stages/beam/position_states-inl.h|without(states[state], here)|states[state]'
@@ -123,8 +126,8 @@ mutants=(  # file | text as it is | broken
   'stages/beam/position_states-inl.h|positions = without(positions, claimed);|'
   'stages/beam/position_states-inl.h|(empty & mask)|empty'
   'stages/beam/position_states-inl.h|(owned & mask)|owned'
-  'stages/beam/compose_pooled.cpp|if (!at_.has_room()) at_.forget_sums();|'
-  'stages/beam/compose_pooled.cpp|if (!at_.has_room(with_sums)) return;|'
+  'stages/beam/compose_pooled.cpp|if (at_.shape.has_sums) {|if (false) {'
+  'stages/beam/compose_pooled.cpp|if (!at_.has_room(with_sums)) {|if (false) {'
   'stages/beam/compose_pooled.cpp|if (fragment.triangle >= pixels.closes_at) pixels.pool.close();|'
   'stages/data/pooled_pixels.h|std::min<std::size_t>(given, of.in_memory)|std::size_t{0}'
   'stages/data/pooled_pixels.h|4 * taken_since_collection_ > on_chip_|4 * taken_since_collection_ > 0'
@@ -134,7 +137,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_pooled_pixel-inl.h|view.head->sums = record.head->sums;|'
   'stages/beam/compose_pooled_pixel-inl.h|spare_ = pixels_.records.take(0);|'
   'stages/beam/compose_pooled_pixel-inl.h|if (shape.has_final) final.store(record.head->final);|'
-  'stages/beam/compose_pooled.cpp|if (retire_final(candidates, watermark)) store(closed);|retire_final(candidates, watermark);'
+  'stages/beam/compose_pooled.cpp|if (!retire_final(candidates, watermark)) continue;|if (retire_final(candidates, watermark)) continue;'
   'stages/beam/compose_pooled.cpp|at_.shape.owners < before|false'
   'stages/beam/compose_pooled_cost.h|of_take * work.takes|of_take * work.wins'
   'stages/beam/compose_pooled_cost.h|of_votes[planes] * work.specks[planes]|of_votes[0] * work.specks[planes]'
@@ -144,9 +147,11 @@ mutants=(  # file | text as it is | broken
   'stages/beam/owner_rules.h|Float(kAreaTolerance) / positions|Float(2 * kAreaTolerance) / positions'
   'simd/depth_plane-inl.h|Float(0.5f) * (magnitude|Float(0.25f) * (magnitude'
   'stages/beam/compose_z3.cpp|share * a.color() + rest * b.color()|rest * a.color() + share * b.color()'
-  'stages/beam/alpha_mask.cpp|return sum / covered;|return sum / static_cast<float>(left.count());'
+  'stages/beam/alpha_mask.cpp|sum += part;|sum += part > 0;'
+  'stages/beam/alpha_mask.cpp|2 * places, quarters)|places, quarters)'
   'stages/beam/alpha_mask.cpp|1.0f / std::sqrt|0.5f / std::sqrt'
-  'stages/samples/alpha_test.cpp|alpha < shader.alpha_cutoff|alpha <= shader.alpha_cutoff'
+  'stages/samples/alpha_test.cpp|alpha >= cutoff ? fragment.mask|alpha > cutoff ? fragment.mask'
+  'stages/samples/alpha_test.cpp|return alpha_at(place_of(fragment, s)) >= cutoff|return alpha_at(place_of(fragment, s)) > cutoff'
   'stages/samples/dilate.cpp|other.draw == sample.draw|true'
   'stages/samples/dilate.cpp|marked / 8|marked / 16'
   'stages/samples/accumulate.cpp|fragment.mask &= ~taken|fragment.mask &= taken'
@@ -169,7 +174,7 @@ mutants=(  # file | text as it is | broken
   'pipeline/memory/texture_memory.cpp|way->used < found->used|way->used > found->used'
   'pipeline/memory/texture_memory.cpp|found->used = ++now_;|found->used = now_;'
   'stages/surface/surface_formulas-inl.h|squared * squared + variance + variance|squared * squared + variance'
-  'stages/geometry/depth_order.cpp|return function == Compare::less_equal|return function == Compare::less'
+  'stages/geometry/depth_order.cpp|  function == Compare::always;|  function == Compare::never;'
   'stages/beam/alpha_mask.cpp|fragment.alpha *= part|fragment.alpha += part - 1'
   'stages/beam/compose_pooled_cost.h|of_contest * work.contests|of_contest * work.claims'
   'stages/beam/compose_pooled_pixel-inl.h|new_slots += has_cover;|'
@@ -178,7 +183,7 @@ mutants=(  # file | text as it is | broken
   'pipeline/units/frame_pool.h|a.chunks > b.chunks|a.chunks < b.chunks'
   'pipeline/memory/record_memory.cpp|record.push_back(free_.back());|record.push_back(never_taken_++);'
   'stages/samples/blend_cost.h|samples.tested * kSampleDepthBytes|samples.passed * kSampleDepthBytes'
-  'stages/beam/alpha_mask_cost.h|rank_cost() * (work.positions + work.ranked)|rank_cost() * work.ranked'
+  'stages/beam/alpha_mask_cost.h|rank_cost() * work.ranked|rank_cost() * work.tests'
   'stages/beam/alpha_mask_cost.h|work.masks * kSheetBytes|work.fragments * kSheetBytes'
   'stages/beam/compose_layers_cost.h|if (layers > 1) counters.ops|counters.ops'
   'stages/beam/compose_z3_cost.h|arrival_cost() * work.fragments|arrival_cost() * work.taken'
@@ -192,7 +197,7 @@ mutants=(  # file | text as it is | broken
   'stages/geometry/draw_plan.cpp|is(blend, BlendFactor::source_alpha, BlendFactor::zero)|false'
   'stages/geometry/draw_plan.cpp|top = std::min(y, y + h)|top = y'
   'stages/geometry/draw_plan.cpp|left = std::max(left, x)|left = x'
-  'stages/geometry/draw_plan.cpp|stencil->depth_fail != StencilOperation::keep|false'
+  'stages/rop/rop_rules.cpp|stencil.depth_fail != kKeep|false'
   'stages/geometry/draw_plan.cpp|sides[1] >= sides[3]|sides[1] > sides[3]'
   'stages/samples/accumulate.cpp|sum.a - accumulator.background[i]|sum.a'
   'stages/samples/accumulate_cost.h|counters.bytes_written += passed * kStencilBytes|counters.bytes_written += tested * kStencilBytes'
@@ -211,66 +216,196 @@ mutants=(  # file | text as it is | broken
   'stages/temporal/motion.cpp|1 - (1 + 2 * placement.depth_offset)|1 + (1 + 2 * placement.depth_offset)'
   'stages/temporal/motion.cpp|depth_offset < -1 ? -1.0 : 1.0|depth_offset < -1 ? 1.0 : -1.0'
   'stages/temporal/motion_cost.h|draw_cost() * draws|draw_cost() * pixels'
-  'tools/evaluate/modelled_time.cpp|4 * rates.at("quads_per_clk")|rates.at("quads_per_clk")'
-  'tools/evaluate/modelled_time.cpp|std::min(room, static_cast<double>(memory.bins_per_core))|room'
-  'tools/evaluate/modelled_time.cpp|free_at.top() + operations|operations'
-  'tools/evaluate/modelled_time.cpp|is_of_cores(unit) ? ms * times_longer : ms|ms * times_longer'
-  'tools/evaluate/modelled_time.cpp|return busiest_of(before).second + longest|return longest'
+  'tools/evaluate/hardware_units.cpp|4 * rates.at("quads_per_clk")|rates.at("quads_per_clk")'
+  'pipeline/memory/parameters.h|std::min(room, static_cast<double>(most_bins(pixels)))|room'
+  'tools/evaluate/modelled_time.cpp|free_at.top() + work|work'
+  'tools/evaluate/modelled_time.cpp|(info_of_unit(unit).is_of_cores ? of_cores : shared)[unit]|of_cores[unit]'
+  'tools/evaluate/modelled_time.cpp|busiest_of(before).second + of_bins.ms|of_bins.ms'
   'tools/evaluate/sensitivity.cpp|(values.size() + 19) / 20 - 1|values.size() / 20'
-  'tools/evaluate/sensitivity.cpp|std::pow(range.high / range.low, part)|(1 + part * (range.high / range.low - 1))'
+  'tools/evaluate/sensitivity.cpp|std::pow(range.high / range.low, uniform(random))|(1 + uniform(random) * (range.high / range.low - 1))'
   'tools/evaluate/remodel.cpp|report.hardware.memory = report.memory;|'
-  'pipeline/bins/render_bins.cpp|held += kept_in_l2_[bin].peak_bytes|held = kept_in_l2_[bin].peak_bytes'
-  'pipeline/bins/render_bins.cpp|static_cast<double>(held - memory.l2.bytes)|static_cast<double>(held)'
+  'pipeline/bins/render_bins.cpp|held += spilled_[bin].peak_bytes|held = spilled_[bin].peak_bytes'
+  'pipeline/bins/render_bins.cpp|static_cast<double>(held - room)|static_cast<double>(held)'
   'pipeline/memory/framebuffer.cpp|!has_room_for(memory.bins_per_core)|!has_room_for(1)'
   'pipeline/memory/framebuffer.cpp|return has_room_for(1) ? side : largest|return side'
   'tools/evaluate/modelled_time.cpp|stage.stage.id == StageId::shade && !has_light|stage.stage.id == StageId::shade'
-  'tools/evaluate/modelled_time.cpp|std::max(1.0, registers / rates|std::max(0.0, registers / rates'
-  'tools/evaluate/modelled_time.cpp|s.logical_bytes() - s.texture_bytes|s.logical_bytes()'
-  'tools/evaluate/modelled_time.cpp|s.pixels_on_chip ? "on_chip_bytes_per_clk" : "rop_bytes_per_clk"|s.pixels_on_chip ? "rop_bytes_per_clk" : "on_chip_bytes_per_clk"'
-  'tools/evaluate/modelled_time.cpp|over(mul_add, rates.at("mul_add_per_clk"))|0'
-  'tools/evaluate/modelled_time.cpp|over(total + wide,|over(total,'
-  'tools/evaluate/modelled_time.cpp|std::max(1 - wide / (mul_add + add), 0.0)|1.0'
-  'tools/evaluate/modelled_time.cpp|over(s.lanes_used, rates|over(s.items_out, rates'
+  'tools/evaluate/modelled_time.cpp|if (registers > 0) of_core = std::min|if (registers > 0) of_core = std::max'
+  'tools/evaluate/hardware_units.cpp|s.logical_bytes() - s.texture_bytes|s.logical_bytes()'
+  'tools/evaluate/hardware_units.cpp|s.pixels_on_chip ? rates|!s.pixels_on_chip ? rates'
+  'tools/evaluate/hardware_units.cpp|over(mul_add, rates.of_cores("core_mul_add_per_clk"))|0'
+  'tools/evaluate/hardware_units.cpp|over(total + wide,|over(total,'
+  'tools/evaluate/hardware_units.cpp|std::max(1 - wide / (mul_add + add), 0.0)|1.0'
+  'tools/evaluate/hardware_units.cpp|over(s.lanes_used, rates|over(s.items_out, rates'
   'pipeline/bins/bands.cpp|edge.b > 0 ? bottom : top|edge.b > 0 ? top : bottom'
   'pipeline/bins/bands.cpp|floor_of(-at_zero - 1,|floor_of(-at_zero,'
+  'stages/rop/rop_rules.h|triangle.front != front_is_clockwise ? 0 : 1|triangle.front == front_is_clockwise ? 0 : 1'
+  'stages/rop/rop_rules.h|clears[at].draw <= next|clears[at].draw < next'
+  'stages/rop/rop_rules.h|[is_blended ? 1 : 0]|[is_blended ? 0 : 0]'
+  'stages/rop/rop_rules.cpp|state.depth.test && state.depth.write;|state.depth.write;'
+  'stages/rop/rop_rules.cpp|stencil_back.value_or(rule.stencil[0])|stencil_back.value_or(Stencil{})'
+  'stages/rop/rop_rules.cpp|return stencil.write_mask != 0 && (|return ('
+  'stages/rop/rop_rules.cpp|window_clear_depth(trace, frame) - 1)|window_clear_depth(trace, frame))'
+  'stages/rop/rop_rules.cpp|, draws.back()[1].writes_depth = false;|;'
+  'stages/rop/rop_rules.cpp|BlendEquation{BlendFactor::one, BlendFactor::one_minus_source_alpha}};|BlendEquation{}};'
+  'stages/rop/rop_rules.cpp|return greater > less ?|return greater >= less ?'
+  'stages/rop/rop_rules.cpp|keeps(blend->alpha.value_or(blend->color));|keeps(blend->color);'
+  'stages/rop/rop_rules.cpp|replaces(state.blend->color) && replaces(state.blend->alpha.value_or(state.blend->color))|replaces(state.blend->color)'
+  'stages/rop/rop_rules.cpp|limits_color(std::ranges::all_of|limits_color(std::ranges::any_of'
+  'stages/rop/rop_formulas.h|return arriving > stored;|return arriving >= stored;'
+  'stages/rop/rop_formulas.h|return arriving <= stored;|return arriving < stored;'
+  'stages/rop/rop_formulas.h|Bits(stencil.reference) & mask, stored & mask|Bits(stencil.reference) & mask, stored'
+  'stages/rop/rop_formulas.h|Bits(stencil.reference) & mask, stored & mask)|stored & mask, Bits(stencil.reference) & mask)'
+  'stages/rop/rop_formulas.h|value = lesser(stored + one, most);|value = stored + one;'
+  'stages/rop/rop_formulas.h|value = greater(stored, one) - one;|value = stored - one;'
+  'stages/rop/rop_formulas.h|value = (stored + most) & most;|value = greater(stored, one) - one;'
+  'stages/rop/rop_formulas.h|(stored & (written ^ most))|(stored & most)'
+  'stages/rop/rop_formulas.h|lesser(source[3], one - stored[3])|lesser(source[3], stored[3])'
+  'stages/rop/rop_formulas.h|return c == 3 ? one : lesser|return lesser'
+  'stages/rop/rop_formulas.h|return one - stored[3];|return one - source[3];'
+  'stages/rop/rop_formulas.h|return one - Real(constant[3]);|return one - Real(constant[c]);'
+  'stages/rop/rop_formulas.h|if (factor == BlendFactor::zero) return Real(0.0f);|'
+  'stages/rop/rop_formulas.h|c == 3 && blend.alpha ? *blend.alpha : blend.color;|blend.color;'
+  'stages/rop/rop_formulas.h|reverse_subtract) return old_part - new_part|reverse_subtract) return new_part - old_part'
+  'stages/rop/rop_formulas.h|return {added, -kept};|return {added, kept};'
+  'stages/rop/rop_formulas.h|brighter < 0 ?|brighter > 0 ?'
+  'stages/rop/stored_color.h|if (rules.limits_color) result|if (!rules.limits_color) result'
+  'stages/rop/stored_color.h|glm::clamp(result, 0.0f, 1.0f)|glm::max(result, 0.0f)'
+  'stages/rop/stored_color.h|: before[c];|: result[c];'
+  'stages/rop/rop_cost.h|if (rule.color_mask >> c & 1) converted|converted'
+  'stages/rop/rop_cost.h|rule.blend && c < channels|c < channels'
+  'stages/samples/ordered_test.cpp|depth = std::clamp(depth, -1.0f, 0.0f);|'
+  'stages/samples/ordered_test.cpp|update(stencil.depth_fail);|update(stencil.fail);'
+  'stages/samples/ordered_test.cpp|operation != StencilOperation::keep && stencil.write_mask != 0|operation != StencilOperation::keep'
+  'stages/samples/ordered_test.cpp|if (!rule.writes_depth) continue;|'
+  'stages/samples/ordered_test.cpp|fragment.mask & ~passed|passed'
+  'stages/samples/ordered_test.cpp|!rule.writes_color()) continue;|false) continue;'
+  'stages/samples/ordered_test.cpp|fragments[left++].mask = passed;|++left;'
+  'stages/samples/ordered_test.cpp|&stencil != stencil_|false'
+  'stages/samples/ordered_test.cpp|rule.tests() ? fragment.mask : 0|rule.tests() ? passed : 0'
+  'stages/samples/ordered_test.cpp|fragment.x * cell_width, fragment.y * cell_height|fragment.x * cell_height, fragment.y * cell_width'
+  'stages/samples/ordered_test.cpp|if (what.depth) std::fill|std::fill'
+  'stages/samples/ordered_test_cost.h|(samples.tested - samples.stencil_failed)|samples.tested'
+  'stages/samples/ordered_test_cost.h|stencil_operation_cost(stencil.pass, stencil) * samples.passed|stencil_operation_cost(stencil.pass, stencil) * samples.tested'
+  'stages/samples/ordered_blend.cpp|surface.first_observed + cell % cells * samples|surface.first_observed'
+  'stages/samples/ordered_blend.cpp|surface.color_bytes == kSampleColorBytes ? 3 : 4|surface.color_bytes == kSampleColorBytes ? 4 : 4'
+  'stages/samples/ordered_blend.cpp|rule.blend ? written : 0|written'
+  'stages/samples/ordered_blend.cpp|surface.is_drawn[at] = true;|'
+  'stages/samples/ordered_blend.cpp|return rounded_to(surface.format, channel);|return channel;'
+  'stages/samples/ordered_blend.cpp|read > 0 ? fragment.mask : 0|fragment.mask'
+  'stages/samples/ordered_blend.cpp|if (&rule != last) last|if (!last) last'
+  'stages/raster/ordered_reference.cpp|depth = std::clamp(depth, -1.0, 0.0);|'
+  'stages/raster/ordered_reference.cpp|k = 1; k < kRowsPerCell;|k = 1; k < kRowsPerCell - 1;'
+  'stages/raster/ordered_reference.cpp|return surface_.is_uniform[cell] && passed_[cell]|return passed_[cell]'
+  'stages/raster/ordered_reference.cpp|return rules_.clear_color;|return source;'
+  'stages/raster/ordered_reference.cpp|rule.color_mask != kAllChannels|false'
+  'stages/raster/ordered_reference.cpp|if (!at_once) divide(cell, first);|'
+  'stages/raster/ordered_reference.cpp|for (const std::uint32_t cell : cells_) passed_[cell] = 0;|'
+  'stages/raster/ordered_reference.cpp|update(stencil.depth_fail);|update(stencil.fail);'
+  'stages/raster/ordered_reference.cpp|static_cast<float>(row % columns) + 0.5f|static_cast<float>(row % columns)'
+  'stages/raster/ordered_reference.cpp|row / columns * width + column / columns|row / columns * width + column % columns'
+  'stages/raster/ordered_reference.cpp|if (rule.writes_depth) surface_.depth[at] = depth;|surface_.depth[at] = depth;'
+  'stages/raster/ordered_reference.cpp|if (clear.depth) std::fill|std::fill'
+  'stages/raster/reference_spans.h|(edge.owns ? 0 : 1)|0'
+  'stages/raster/reference_spans.h|floor_quotient(at_zero, -per_sample) + 1|floor_quotient(at_zero, -per_sample)'
+  'stages/raster/reference_spans.h|std::max(span.first, -floor_quotient(at_zero, per_sample))|std::max(span.first, 1 - floor_quotient(at_zero, per_sample))'
+  'stages/raster/reference_spans.h|floor_quotient(y_low * steps_.scale, steps_.y)|floor_quotient(y_low * steps_.scale, steps_.y) + 1'
+  'stages/raster/reference_spans.h|(span.first * steps_.x + offset)|(span.first * steps_.x)'
+  'stages/beam/compose_regions.cpp|std::isnan(channel) ? 0.0f : rounded_to_half|rounded_to_half'
+  'stages/beam/compose_regions.cpp|share_of(static_cast<float>(b.area)|share_of(static_cast<float>(a.area)'
+  'stages/beam/compose_regions.cpp|a.is_touched = a.is_touched && b.is_touched;|a.is_touched = b.is_touched;'
+  'stages/beam/compose_regions.cpp|for (Region& region : pixel_->regions) region.is_touched = false;|'
+  'stages/beam/compose_regions.cpp|if (what.depth) region.triangle = kNobodysDepth, |if (what.depth) '
+  'stages/beam/compose_regions.cpp|met.inside = region.positions & fragment.mask;|met.inside = fragment.mask;'
+  'stages/beam/compose_regions.cpp|if (met.passed != met.inside) {|if (met.passed.none()) {'
+  'stages/beam/compose_regions.cpp|stencil_->depth_fail, of_depth_fail_|stencil_->fail, of_depth_fail_'
+  'stages/beam/compose_regions.cpp|met.passed_stencil != region.stencil|false'
+  'stages/beam/compose_regions.cpp|std::max(area - whole, 0.0f) / parts|area / parts'
+  'stages/beam/compose_regions.cpp|estimates_[k] * scale + 0.5f|estimates_[k] + 0 * scale + 0.5f'
+  'stages/beam/compose_regions.cpp|if (rest.positions.none()) return part.area = rest.area, part;|'
+  'stages/beam/compose_regions.cpp|rest.area = static_cast<std::uint16_t>(rest.area - part.area);|'
+  'stages/beam/compose_regions.cpp|take(without(met.inside, met.passed))|take(met.inside)'
+  'stages/beam/compose_regions.cpp|if (rule_->writes_depth) part.triangle|part.triangle'
+  'stages/beam/compose_regions.cpp|part.drawn = kWhollyDrawn;|'
+  'stages/beam/compose_regions.cpp|a.stencil != b.stencil|false'
+  'stages/beam/compose_regions.cpp|std::abs(a.color[c] - b.color[c]) > kSameColor|a.color[c] - b.color[c] > kSameColor'
+  'stages/beam/compose_regions.cpp|while (regions.size() > kMostRegions)|while (regions.size() >= kMostRegions)'
+  'stages/beam/compose_regions.cpp|if (lost < least)|if (lost <= least)'
+  'stages/beam/compose_regions.cpp|if (regions[one].area < regions[other].area) std::swap(regions[one], regions[other]);|'
+  'stages/beam/compose_regions.cpp|if (met.passed.none()) return false;|'
+  'stages/beam/compose_regions.cpp|color[c], area / sum)|color[c], 0.5f)'
+  'stages/beam/compose_regions.cpp|std::pair(!a.is_touched, a.area) < std::pair(!b.is_touched, b.area)|a.area < b.area'
+  'stages/beam/compose_regions.cpp|if (region.is_touched |if (false '
+  'stages/beam/compose_regions.cpp|std::min(specks.area / static_cast<float>(region.area), 1.0f)|specks.area / static_cast<float>(region.area)'
+  'stages/beam/compose_regions.cpp|pixel_->draw = draw;|'
+  'stages/beam/compose_regions.cpp|work.whole * kOwnersWholeFragmentBytes|work.whole * owners_fragment_bytes(words)'
+  'stages/beam/compose_regions.cpp|count_spills({.reads = moved, .writes = 1});|'
+  'stages/beam/region_rules.h|!is_in_range(stored)|false'
+  'stages/beam/region_rules.h|Float(0.0f), Float(4.0f))|Float(4.0f), Float(0.0f))'
+  'stages/data/region_pixels.h|/ kChunkBytes + regions)|/ kChunkBytes + planes_for(regions))'
+  'stages/data/region_pixels.h|first_words(words)|first_words(1)'
+  'stages/data/ordered_tile.h|is_drawn(depth.size(), false)|is_drawn(depth.size(), true)'
+  'pipeline/units/ordered_unit.cpp|shade.counts_centroids();|'
+  'pipeline/units/ordered_unit.cpp|raster.keeps_hidden();|'
+  'pipeline/units/ordered_unit.cpp|surface_.first_observed = bin.observer()->first_sample(sampling);|'
+  'pipeline/units/ordered_unit.cpp|memory_.flush(blending.counters);|'
+  'pipeline/units/regions_unit.h|std::sqrt(fragment.alpha)|fragment.alpha'
+  'pipeline/units/regions_unit.h|++(*shadings_)[fragments[i].pixel];|'
+  'pipeline/units/regions_unit.h|spills_ += result.spills;|'
+  'pipeline/units/regions_unit.h|bin_.texels()->end_request();|'
+  'stages/data/pooled_pixels.h|8 * used() > 7 * on_chip_|8 * used() > 8 * on_chip_'
+  'stages/data/pooled_pixels.h|std::max<std::uint32_t>(of.count, guaranteed_)|guaranteed_'
+  'stages/data/pooled_pixels.h|used_on_chip_ -= given - from_memory;|used_on_chip_ -= given;'
+  'stages/data/pooled_pixels.h|in_memory_ -= from_memory;|'
+  'stages/data/pooled_pixels.h|peak_ = std::max(peak_, used());|peak_ = std::max(peak_, used_on_chip_);'
+  'stages/rop/rop_formulas.h|return one - source[3];|return one - source[c];'
+  'stages/rop/rop_formulas.h|return stored[3];|return stored[c];'
 )
 
-for mutant in "${mutants[@]}"; do  # before anything is built
+stale=0
+for mutant in "${mutants[@]}"; do
   IFS='|' read -r file whole broken <<<"$mutant"
-  [[ -f $file ]] && WHOLE=$whole perl -0ne 'exit !/\Q$ENV{WHOLE}\E/' "$file" || {
-    echo "$file has no \"$whole\" any more" >&2
-    exit 1
-  }
+  [[ -f $file ]] && WHOLE=$whole perl -0ne '$found = () = /\Q$ENV{WHOLE}\E/g; exit($found != 1)' "$file" && continue
+  echo "$file does not have exactly one \"$whole\"" >&2
+  stale=1
 done
+[[ $stale == 0 && ${1:-} != --check ]] || exit $stale
 
+build=${1:-build/release}
+only=" ${*:2} "
+results=$build/mutants.txt
+touch "$results"
 unnoticed=0
 for mutant in "${mutants[@]}"; do
   IFS='|' read -r file whole broken <<<"$mutant"
   [[ $only == "  " || $only == *" $file "* ]] || continue
+  ! grep -F -- "$mutant: " "$results" | grep -qv ": NOBODY$" || continue
   original=$(mktemp)
   cp "$file" "$original"
   trap 'cp "$original" "$file"' EXIT
   WHOLE=$whole BROKEN=$broken perl -0pi -e 's/\Q$ENV{WHOLE}\E/$ENV{BROKEN}/' "$file"
   noticed=
-  folders=(simd stages pipeline)
-  [[ $file == stages/* ]] && folders=(stages pipeline)
-  [[ $file == pipeline/* ]] && folders=(pipeline)
-  [[ $file == tools/* ]] && folders=(tools)
-  [[ $file == traces/* ]] && folders=(traces)
+  case $file in
+    simd/*) folders=(simd stages pipeline) ;;
+    stages/spirv/*) folders=(spirv programs) ;;
+    stages/surface/*) folders=(stages programs pipeline) ;;
+    stages/*) folders=(stages pipeline) ;;
+    pipeline/*) folders=(pipeline tools) ;;
+    *) folders=("${file%%/*}") ;;
+  esac
   for folder in "${folders[@]}"; do
     if ! cmake --build "$build" --target "${folder}_tests" >/dev/null 2>&1; then
       noticed="the compiler"  # of a build with warnings as errors
       break
     fi
-    log=$("$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
+    log=$(timeout 20m "$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
     noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
-    noticed=${noticed:-a crash of ${folder}_tests}
+    noticed=${noticed:-${folder}_tests, which crashed or did not end}
     break
   done
   cp "$original" "$file"
   trap - EXIT
   rm "$original"
-  echo "$file: $whole -> $broken: ${noticed:-NOBODY}"
+  echo "$mutant: ${noticed:-NOBODY}" | tee -a "$results"
   [[ $noticed ]] || unnoticed=1
 done
 exit $unnoticed

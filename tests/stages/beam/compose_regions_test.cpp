@@ -44,6 +44,8 @@ class OnePixel {
     rules_.draws.push_back({rule, rule});
     color_ = color;
   }
+  // Of the draw's triangles from here on.
+  void color(const glm::vec4& color) { color_ = color; }
   void clear_before_next(std::optional<std::uint32_t> stencil, bool depth = false) {
     rules_.clears.push_back({static_cast<std::uint32_t>(rules_.draws.size()), depth, stencil});
   }
@@ -404,6 +406,58 @@ TEST(Regions, SpecksAddTheirArea) {
   EXPECT_EQ(pixel.shaded, 16u);
 }
 
+// Each is half of a square of 1/256 px, and no position is near.
+void add_specks(OnePixel& pixel, int count) {
+  for (int i = 0; i < count; ++i) pixel.triangle({2, 2, -0.25f}, {3, 2, -0.25f}, {2, 3, -0.25f});
+}
+constexpr double kSpeck = 0.5 / 65536;
+
+TEST(Regions, SpecksHaveTheirMeanColour) {
+  OnePixel pixel(glm::vec4(0.0f));
+  pixel.begin(without_depth(), {0, 0, 0, 1});
+  add_specks(pixel, 48);
+  pixel.color({0, 256, 0, 1});
+  add_specks(pixel, 16);
+  expect_color(pixel.compose(), {0, 16 * kSpeck * 256, 0}, 1e-4);
+}
+
+// What the draw covers has its colour already. Its specks go to the largest region that it has not touched.
+TEST(Regions, SpecksGoWhereTheirDrawHasNotBeen) {
+  for (const int covered : {0, 192, 256}) {
+    OnePixel pixel(glm::vec4(0.0f));
+    pixel.everywhere(without_depth(), kBlue);
+    pixel.begin(without_depth(), kRed);
+    if (covered == 256) {
+      pixel.everywhere();
+    } else if (covered > 0) {
+      pixel.left_of(covered);
+    }
+    pixel.color({0, 256, 0, 1});
+    add_specks(pixel, 64);
+    EXPECT_NEAR(pixel.compose().g, covered == 256 ? 0 : 64 * kSpeck * 256, 1e-3) << covered;
+  }
+}
+
+// A region that is joined to what the draw has not touched is not touched as a whole.
+TEST(Regions, SpecksGoToWhatIsPartlyTouched) {
+  OnePixel pixel(glm::vec4(0.5f));
+  pixel.begin(without_depth(), glm::vec4(0.5f));
+  pixel.left_of(128);
+  pixel.color({0.5f, 256, 0.5f, 1});
+  add_specks(pixel, 64);
+  EXPECT_NEAR(pixel.compose().g, 0.5 + 64 * kSpeck * 255.5, 1e-3);
+  EXPECT_EQ(pixel.regions.size(), 1u);
+}
+
+TEST(Regions, SpecksFillARegionOnce) {
+  OnePixel pixel(glm::vec4(0.0f));
+  pixel.begin(without_depth(), kRed);
+  pixel.left_of(250);
+  pixel.color({0, 16, 0, 1});
+  add_specks(pixel, 8192);  // 1/16 of the pixel, and 6/256 are left
+  EXPECT_NEAR(pixel.compose().g, 16 * 6 / 256.0, 16 * 2 * kAreaStep);
+}
+
 TEST(Regions, HiddenSpecksAddNothing) {
   OnePixel pixel;
   pixel.everywhere(plain(), kRed, -0.75f);
@@ -411,6 +465,45 @@ TEST(Regions, HiddenSpecksAddNothing) {
   pixel.triangle({2, 2, -0.5f}, {3, 2, -0.5f}, {2, 3, -0.5f});
   EXPECT_EQ(pixel.compose(), kRed);
   EXPECT_EQ(pixel.shaded, 1u);
+}
+
+// A quarter and three quarters whose colours are 1/128 apart.
+TEST(Regions, ColoursThatAreJoinedCountWithTheirAreas) {
+  OnePixel pixel;
+  pixel.begin(without_depth(), glm::vec4(0.5f));
+  pixel.left_of(64);
+  pixel.begin(without_depth(), glm::vec4(0.5f + 1.0f / 128));
+  pixel.right_of(64);
+  expect_color(pixel.compose(), glm::dvec3(0.5 + 0.75 / 128), 0x1p-11);
+  EXPECT_EQ(pixel.regions.size(), 1u);
+}
+
+// The first draw has a quarter of the pixel, which the second one covers with half of it: another quarter is left.
+TEST(Regions, WhatIsCoveredAsAWholeTakesItsShareFirst) {
+  OnePixel pixel;
+  pixel.begin(without_depth(), kRed);
+  pixel.left_of(64);
+  pixel.begin(without_depth(), kGreen);
+  pixel.left_of(128);
+  EXPECT_NEAR(pixel.compose().g, 0.5 + 0.5 * kClear.g, 3 * kAreaStep);
+}
+
+// Where depth has been cleared, nobody knows any more whose it was.
+TEST(Regions, AClearOfDepthMakesRegionsAlike) {
+  OnePixel pixel;
+  pixel.begin(plain(), kRed);
+  pixel.left_of(100);
+  pixel.right_of(100);
+  pixel.clear_before_next({}, true);
+  pixel.everywhere(without_depth(), kGreen);
+  EXPECT_EQ(pixel.compose(), kGreen);
+  EXPECT_EQ(pixel.regions.size(), 1u);
+}
+
+TEST(Regions, WhatIsNoNumberIsStoredAsZero) {
+  OnePixel pixel;
+  pixel.everywhere(without_depth(), {NAN, 1, 0, 1});
+  EXPECT_EQ(pixel.compose().r, 0);
 }
 
 TEST(Regions, TooManyRegionsBecomeOneOfThoseThatAreAlike) {
@@ -621,6 +714,19 @@ TEST(Regions, AWholeLayerCostsAsMuchAsOneSample) {
   EXPECT_EQ(two.mul_add - one.mul_add, 8u);
   EXPECT_EQ(two.add - one.add, 8u);
   EXPECT_EQ(two.bit - one.bit, 0u);
+}
+
+// A layer over two regions cuts neither: only the word and both regions are written, and no planes.
+TEST(Regions, AWholeLayerWritesNoPlanes) {
+  const auto written = [](int layers) {
+    OnePixel pixel;
+    pixel.begin(without_depth(), kRed);
+    pixel.left_of(128);
+    for (int i = 0; i < layers; ++i) pixel.everywhere(over(), {1, 1, 1, 0.5f});
+    pixel.compose();
+    return pixel.counters.bytes_written;
+  };
+  EXPECT_EQ(written(1) - written(0), kPixelWordBytes + 2 * kRegionBytes);
 }
 
 TEST(Regions, RecordsHoldWhatTheLayoutSays) {

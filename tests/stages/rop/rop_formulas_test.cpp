@@ -51,31 +51,33 @@ TEST(RopFormulas, StencilOperations) {
 
 constexpr float kSource[4] = {0.5f, 0.25f, 1, 0.25f}, kStored[4] = {0.125f, 0.5f, 0.75f, 0.5f};
 
+// No two numbers that a factor may be mistaken for are equal.
 TEST(RopFormulas, BlendFactors) {
   const glm::vec4 constant(0.1f, 0.2f, 0.3f, 0.4f);
+  const float source[4] = {0.0625f, 0.125f, 1, 0.25f}, stored[4] = {0.5f, 0.375f, 0.75f, 0.6875f};
   // Of green and of alpha.
   const std::array<std::array<float, 2>, 15> expected = {{{0, 0},
                                                           {1, 1},
+                                                          {0.125f, 0.25f},
+                                                          {0.875f, 0.75f},
                                                           {0.25f, 0.25f},
                                                           {0.75f, 0.75f},
-                                                          {0.25f, 0.25f},
-                                                          {0.75f, 0.75f},
-                                                          {0.5f, 0.5f},
-                                                          {0.5f, 0.5f},
-                                                          {0.5f, 0.5f},
-                                                          {0.5f, 0.5f},
+                                                          {0.375f, 0.6875f},
+                                                          {0.625f, 0.3125f},
+                                                          {0.6875f, 0.6875f},
+                                                          {0.3125f, 0.3125f},
                                                           {0.25f, 1},
                                                           {0.2f, 0.4f},
                                                           {0.8f, 0.6f},
                                                           {0.4f, 0.4f},
                                                           {0.6f, 0.6f}}};
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_FLOAT_EQ(blend_factor(static_cast<BlendFactor>(i), 1, kSource, kStored, constant), expected[i][0]) << i;
-    EXPECT_FLOAT_EQ(blend_factor(static_cast<BlendFactor>(i), 3, kSource, kStored, constant), expected[i][1]) << i;
+    EXPECT_FLOAT_EQ(blend_factor(static_cast<BlendFactor>(i), 1, source, stored, constant), expected[i][0]) << i;
+    EXPECT_FLOAT_EQ(blend_factor(static_cast<BlendFactor>(i), 3, source, stored, constant), expected[i][1]) << i;
   }
   // A saturated factor is what alpha leaves room for.
   const float opaque[4] = {0, 0, 0, 0.875f};
-  EXPECT_EQ(blend_factor(BlendFactor::source_alpha_saturate, 0, kSource, opaque, constant), 0.125f);
+  EXPECT_EQ(blend_factor(BlendFactor::source_alpha_saturate, 0, source, opaque, constant), 0.125f);
 }
 
 TEST(RopFormulas, BlendOperations) {

@@ -1,4 +1,5 @@
 // Tests and blending of samples in the API's order, by hand.
+#include "stages/data/sample_tile.h"
 #include "stages/samples/ordered_blend.h"
 #include "stages/samples/ordered_test.h"
 #include "tests/stages/screen_triangles.h"
@@ -121,6 +122,52 @@ TEST(OrderedTest, CountsStencils) {
   EXPECT_EQ(more.bit - with.bit, 2u * 3);
 }
 
+// What may write a word but has no bit to write leaves it alone.
+TEST(OrderedTest, MaskedStencilsWriteNothing) {
+  Draws draws;
+  DrawState& state = draws.add(-0.5f);
+  state.depth.test = false;
+  state.stencil = Stencil{.reference = 9, .write_mask = 0, .pass = StencilOperation::replace};
+  const Tested found(draws);
+  ASSERT_EQ(found.accesses.size(), 1u);
+  EXPECT_EQ(found.accesses[0].read, 3u);
+  EXPECT_EQ(found.accesses[0].written, 0u);
+  EXPECT_EQ(found.counters.bytes_written, 0u);
+}
+
+// Both samples fail: nobody computes their depth, or what passes would store. The plane takes two differences and two
+// sums.
+TEST(OrderedTest, WhatFailsCostsNoMore) {
+  Draws draws;
+  draws.add(-0.5f).stencil = Stencil{.function = Compare::never, .pass = StencilOperation::increment};
+  EXPECT_EQ(Tested(draws).counters.ops.add, 4u);
+}
+
+// Two triangles of one draw: only samples of the second one, a back face, are counted up.
+TEST(OrderedTest, EachFaceHasItsCosts) {
+  Draws draws;
+  DrawState& state = draws.add(-0.5f);
+  state.depth.test = false;
+  add_everywhere(draws.triangles, -0.5f);
+  draws.triangles.draws.push_back(0);
+  draws.triangles.triangles[0].front = true, draws.triangles.triangles[1].front = false;
+  draws.fragments.push_back({1, 1, 1, 0, 3});
+  const OperationCounts without = Tested(draws).counters.ops;
+  state.stencil = Stencil{.function = Compare::equal}, state.stencil_back = state.stencil;
+  state.stencil_back->pass = StencilOperation::increment;
+  const OperationCounts with = Tested(draws).counters.ops;
+  EXPECT_EQ(with.add - without.add, 4u + 2 * 2);
+  EXPECT_EQ(with.bit - without.bit, 4u + 2 * 3);
+}
+
+TEST(OrderedTest, ClearsOfStencilsKeepDepth) {
+  Draws draws;
+  draws.add(-0.75f), draws.add(-0.5f).stencil_cleared_to = 4;
+  const Tested found(draws);
+  EXPECT_EQ(found.left.size(), 1u);
+  EXPECT_EQ(found.surface.depth[2], -0.75f);
+}
+
 TEST(OrderedTest, ClearsComeBeforeTheirDraw) {
   Draws draws;
   draws.add(-0.75f).stencil = Stencil{.reference = 1, .pass = StencilOperation::replace};
@@ -151,6 +198,66 @@ TEST(OrderedTest, DepthsAreLimited) {
   EXPECT_EQ(found.surface.depth, (std::vector<float>{0, 0, -1, 0}));
   ASSERT_EQ(found.left.size(), 2u);
   EXPECT_EQ(found.left[1].mask, 2u);
+}
+
+// Two cells in a pixel, left and right. The fragments are in the right one of pixel (1, 0), which is cell 3 of the tile
+// and whose samples are numbers 2 and 3 of the pixel.
+const Sampling kHalves{CellGrid{2, 1}, standard_pattern(2)};
+
+PixelObservers observers_of_pixel_1() {
+  PixelObservers observers(2);
+  observers[1] = std::make_unique<PixelObserver>();
+  observers[1]->add_positions(std::vector<glm::vec2>(4));
+  return observers;
+}
+
+TEST(OrderedTest, CellsHaveTheirPlaceInThePixel) {
+  Draws draws;
+  add_triangle(draws.triangles, {-1024, -1024, -2}, {2048, -1024, 1}, {-1024, 2048, -2});  // x / 4 - 1, in pixels
+  draws.triangles.draws = {0};
+  draws.frame.draws.emplace_back();
+  OrderedTile surface(kTile, 4, 0.0f, false, glm::vec4(0.0f));
+  std::vector<SampleFragment> left = {{0, 0, 3, 0, 3}};
+  std::vector<OrderedAccess> accesses;
+  StageCounters counters;
+  ordered_test({draws.triangles, kTile, kHalves}, draws.rules(), counters, surface, left, accesses);
+  for (std::size_t s = 0; s < 2; ++s)
+    EXPECT_NEAR(surface.depth[6 + s], (1.5 + static_cast<double>(kHalves.pattern.x[s]) / 256) / 4 - 1, 1e-6) << s;
+}
+
+TEST(OrderedTest, ObserversSeeWhatFails) {
+  Draws draws;
+  draws.add(-0.5f), draws.add(-0.25f), draws.add(-0.75f);
+  for (SampleFragment& fragment : draws.fragments) fragment.x = 3;
+  draws.fragments[2].mask = 1;
+  OrderedTile surface(kTile, 4, 0.0f, false, glm::vec4(0.0f));
+  const PixelObservers observers = observers_of_pixel_1();
+  surface.observers = &observers;
+  std::vector<OrderedAccess> accesses;
+  StageCounters counters;
+  ordered_test({draws.triangles, kTile, kHalves}, draws.rules(), counters, surface, draws.fragments, accesses);
+  const std::vector<HistoryFragment>& seen = observers[1]->history.fragments;
+  ASSERT_EQ(seen.size(), 3u);
+  EXPECT_EQ(seen[0].mask, std::vector<bool>(4));
+  EXPECT_EQ(seen[1].mask, (std::vector<bool>{false, false, true, true})) << "behind";
+  EXPECT_EQ(seen[2].mask, std::vector<bool>(4));
+}
+
+TEST(OrderedBlend, ObserversSeeWhichSamplesAreBlended) {
+  Draws draws;
+  draws.add(-0.5f, 2);
+  draws.fragments[0].x = 3;
+  OrderedTile surface(kTile, 4, 0.0f, false, glm::vec4(0.0f));
+  surface.color_bytes = 8;
+  const PixelObservers observers = observers_of_pixel_1();
+  surface.observers = &observers;
+  std::vector<OrderedAccess> accesses;
+  StageCounters counters;
+  ordered_blend({draws.triangles, kTile, kHalves}, draws.rules(), {draws.fragments, {glm::vec4(1)}}, counters, surface,
+                accesses);
+  const std::vector<HistoryFragment>& seen = observers[1]->history.fragments;
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].mask, (std::vector<bool>{false, false, false, true}));
 }
 
 struct Blended {
@@ -203,6 +310,7 @@ TEST(OrderedBlend, LimitsAndRoundsColors) {
 // Two samples. Opaque: four conversions each. Blended: four more from the stored format, and a sum for each channel.
 TEST(OrderedBlend, CountsItsWork) {
   Draws draws;
+  draws.frame.draws.reserve(2);
   DrawState& state = draws.add(0);
   const Blended opaque(draws, {glm::vec4(1)});
   EXPECT_EQ(opaque.counters.ops, (OperationCounts{.convert = 8}));
@@ -216,6 +324,10 @@ TEST(OrderedBlend, CountsItsWork) {
   EXPECT_EQ(blended.counters.bytes_read, kSampleFragmentBytes + 16);
   const Blended rgb(draws, {glm::vec4(1)}, kSampleColorBytes);
   EXPECT_EQ(rgb.counters.ops, (OperationCounts{.add = 6, .convert = 12})) << "three channels";
+  state.blend.reset(), state.color_mask = kGreenChannel;
+  EXPECT_EQ(Blended(draws, {glm::vec4(1)}).counters.ops, (OperationCounts{.convert = 2})) << "one channel";
+  draws.add(0).blend = Blend{{BlendFactor::one, BlendFactor::one}, {}, {}};
+  EXPECT_EQ(Blended(draws, {glm::vec4(1), glm::vec4(1)}).counters.ops, (OperationCounts{.add = 8, .convert = 2 + 16}));
 }
 
 }  // namespace beampipe::ordered_stages_test
