@@ -30,7 +30,8 @@ Framebuffer reference_framebuffer(const ReferencePattern& pattern) {
 FrameResult render_reference(const FrameJob& job, const ReferencePattern& pattern) {
   FrameInput without_memory = job.run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
-  const FrameContext context({job.trace, job.frame, without_memory, job.sinks}, {}, DrawOrder::of_api);
+  const FrameContext context({job.trace, job.frame, without_memory, job.sinks},
+                             {.derivatives = Derivatives::analytic_of_cells}, DrawOrder::of_api);
   const BinPlan plan{.stages = {StageId::reference_raster, StageId::resolve},
                      .framebuffer = reference_framebuffer(pattern),
                      .translucent_pair_bytes = context.rop ? 0 : layer_bytes(pattern)};

@@ -23,8 +23,23 @@ Barycentrics<float> weights_of(const SetupSurface& surface, float x, float y) {
   return weights_at(surface.planes, x - surface.anchor_x, y - surface.anchor_y);
 }
 
-std::size_t lane_in_quad(const ProgramPlace& place) {
-  return static_cast<std::size_t>((place.x & 1) + 2 * (place.y & 1));
+// A square in the grid of all that are shaded, and where the place is in it: 0..1.
+struct SquarePlace {
+  std::int32_t column, row;
+  float u, v;
+};
+
+SquarePlace square_of(const ProgramPlace& place) {
+  const float u = place.u / place.side, v = place.v / place.side;
+  const float column = place.side == 1 ? 0 : std::floor(u), row = place.side == 1 ? 0 : std::floor(v);
+  const auto in_grid = [&](std::int32_t pixel, float in_pixel) {
+    return static_cast<std::int32_t>(std::lround(static_cast<float>(pixel) / place.side + in_pixel));
+  };
+  return {in_grid(place.x, column), in_grid(place.y, row), u - column, v - row};
+}
+
+std::size_t lane_in_quad(const SquarePlace& square) {
+  return static_cast<std::size_t>((square.column & 1) + 2 * (square.row & 1));
 }
 
 Barycentrics<float> into_triangle(const Barycentrics<float>& weights) {
@@ -177,7 +192,7 @@ void ProgramShader::set_inputs(const BoundDraw& draw, const ProgramPlace& place,
   }
 }
 
-// Places at the centres of pixels of one quad share a group, where each is the other's neighbour.
+// Places at the centres of squares of one quad share a group, where each is the other's neighbour.
 std::vector<ProgramShader::Group> ProgramShader::grouped(const LaneProgram& program,
                                                          std::span<const ProgramPlace> places) {
   std::vector<Group> groups;
@@ -193,12 +208,13 @@ std::vector<ProgramShader::Group> ProgramShader::grouped(const LaneProgram& prog
       groups.emplace_back().places[0] = i;
       continue;
     }
-    const std::size_t lane = lane_in_quad(place);
-    if (place.u != 0.5f || place.v != 0.5f) {
+    const SquarePlace square = square_of(place);
+    const std::size_t lane = lane_in_quad(square);
+    if (square.u != 0.5f || square.v != 0.5f) {
       groups.emplace_back().places[lane] = i;
       continue;
     }
-    const auto [quad, is_new] = quads.try_emplace({place.triangle, place.x >> 1, place.y >> 1}, groups.size());
+    const auto [quad, is_new] = quads.try_emplace({place.triangle, square.column >> 1, square.row >> 1}, groups.size());
     if (is_new) groups.emplace_back();
     std::uint32_t& there = groups[quad->second].places[lane];
     if (there == Group::kNone) {
@@ -238,16 +254,17 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
         if (!has_helpers) {  // each place has a triangle of its own
           set_inputs(draw, place, std::span(lanes).subspan(count - 1, 1), helpers, executor);
         } else if (!place.in_quad) {
-          add(1, x + 1, y, true), add(2, x, y + 1, true);
+          add(1, x + place.side, y, true), add(2, x, y + place.side, true);
         }
       }
       if (!has_helpers) continue;
       for (std::size_t lane = 0; last->in_quad && lane < kGroup; ++lane) {
         if (group.places[lane] != Group::kNone) continue;  // texture units look at the whole quad
-        const auto middle = [lane](std::int32_t pixel, std::size_t bit) {
-          return static_cast<float>((pixel & ~1) + static_cast<std::int32_t>(lane >> bit & 1)) + 0.5f;
+        const SquarePlace square = square_of(*last);
+        const auto middle = [&](std::int32_t number, std::size_t bit) {
+          return (static_cast<float>((number & ~1) + static_cast<std::int32_t>(lane >> bit & 1)) + 0.5f) * last->side;
         };
-        add(lane, middle(last->x, 0), middle(last->y, 1), true);
+        add(lane, middle(square.column, 0), middle(square.row, 1), true);
       }
       set_inputs(draw, *last, std::span(lanes).first(count), helpers, executor);
     }

@@ -5,7 +5,8 @@
 //
 // Derivatives are per pixel, whatever part of it a colour stands for: differences between a pixel and its neighbours in
 // a 2x2 quad, or between a place and those one pixel to the right and below, from the planes. These two are helper
-// invocations, which cost as much as others.
+// invocations, which cost as much as others. Where cells of a pixel are shaded, by the reference and by multisampling
+// above 16 samples, they are per cell: as in a picture of that resolution.
 //
 // Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point, and
 // all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1.
@@ -30,7 +31,8 @@ struct ProgramPlace {
   std::uint32_t triangle = 0;
   std::int32_t x = 0, y = 0;       // the pixel
   float u = 0.5f, v = 0.5f;        // in it
-  bool in_quad = false;            // derivatives are those of its quad
+  float side = 1;                  // of the squares that are shaded, in pixels: 1, or 1/2, 1/4, ...
+  bool in_quad = false;            // derivatives are those of a quad of such squares
   bool stays_in_triangle = false;  // inputs are those of the nearest point of the triangle, about
   bool is_there = false;           // who asks knows that the surface is there, or near it in the pixel
 };

@@ -108,7 +108,7 @@ TexturePlace<Real> counted_place(const SurfaceVertexOf<Real>& vertex, std::uint3
                                  Derivatives derivatives) {
   const Real one = vertex.color[0];
   const std::array<std::array<Real, 2>, 3> uvs{vertex.uvs[set], vertex.uvs[set], vertex.uvs[set]};
-  if (derivatives == Derivatives::analytic) return place_on_triangle(uvs, planes, one, one, weights);
+  if (derivatives != Derivatives::quad) return place_on_triangle(uvs, planes, one, one, weights);
   TexturePlace<Real> found;
   for (std::size_t c = 0; c < 2; ++c) {
     found.uv[c] = interpolated(uvs[0][c], uvs[1][c], uvs[2][c], weights);
@@ -361,15 +361,21 @@ glm::vec3 SurfaceShader::stored_color(const glm::vec3& linear) const {
   return stored;
 }
 
-ProgramPlace SurfaceShader::program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const {
+ProgramPlace SurfaceShader::program_place(const Invocation& invocation, bool is_color) const {
+  const auto& [triangle, place, footprint] = invocation;
   if (is_color && rules_.colors == SurfaceColors::by_pixel)
     return {.triangle = triangle, .x = place.x, .y = place.y, .stays_in_triangle = true, .is_there = true};
+  const bool in_cells = rules_.derivatives != Derivatives::analytic, is_centre = [&] {
+    const float column = place.u / footprint.yy, row = place.v / footprint.yy;
+    return column - std::floor(column) == 0.5f && row - std::floor(row) == 0.5f;
+  }();
   return {.triangle = triangle,
           .x = place.x,
           .y = place.y,
           .u = place.u,
           .v = place.v,
-          .in_quad = rules_.derivatives == Derivatives::quad,
+          .side = in_cells ? footprint.yy : 1.0f,
+          .in_quad = in_cells && (footprint.yy == 1 || is_centre),
           .is_there = is_color};
 }
 
@@ -389,8 +395,7 @@ void SurfaceShader::for_each_draw(const std::vector<Invocation>& invocations, co
   for (const std::size_t i : numbers) of_draws[triangles_.draws[invocations[i].triangle]].push_back(i);
   for (const auto& [draw, of_draw] : of_draws) {
     std::vector<ProgramPlace> places;
-    for (const std::size_t i : of_draw)
-      places.push_back(program_place(invocations[i].triangle, invocations[i].place, true));
+    for (const std::size_t i : of_draw) places.push_back(program_place(invocations[i], true));
     visit(places, of_draw);
   }
 }
@@ -438,7 +443,7 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
 float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                            TexelRequests* texels) const {
   if (!is_opaque(triangle) && is_program(triangle)) {
-    const float found = run_program(program_place(triangle, place, false), texels).a;
+    const float found = run_program(program_place({triangle, place, footprint}, false), texels).a;
     if (found == ProgramShader::kDiscarded) return 0.0f;
     return alpha_mode(triangle) == AlphaMode::mask ? 1.0f : found;
   }
@@ -732,7 +737,8 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
 
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                 TexelRequests* texels) const {
-  if (is_program(triangle)) return with_limited_alpha(run_program(program_place(triangle, place, true), texels));
+  if (is_program(triangle))
+    return with_limited_alpha(run_program(program_place({triangle, place, footprint}, true), texels));
   const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
   find_inputs({&invocation, 1}, texels, &inputs);

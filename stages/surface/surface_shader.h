@@ -50,8 +50,9 @@ struct Invocation {
 };
 
 // How a shader knows what part of a texture a pixel covers: from the planes of its own triangle, or as the difference
-// between the pixels of its 2x2 quad, which helper invocations shade.
-enum class Derivatives { analytic, quad };
+// between the pixels of its 2x2 quad, which helper invocations shade. Textures of materials are filtered for the
+// footprint in any case; the differences that programs take are those of the pixel, or of cells from the planes.
+enum class Derivatives { analytic, quad, analytic_of_cells };
 
 // Between a material and its lighting: nothing is stored, or a G-buffer with few bits.
 enum class MaterialStorage { none, gbuffer };
@@ -231,7 +232,7 @@ class SurfaceShader {
     return is_program(triangle) ? programs_.alpha_mode(triangles_.draws[triangle]) : material(triangle).alpha_mode;
   }
   // Where a program runs. `is_color`: rules say where; else it is at the place itself.
-  ProgramPlace program_place(std::uint32_t triangle, const ShadingPlace& place, bool is_color) const;
+  ProgramPlace program_place(const Invocation& invocation, bool is_color) const;
   // Color and alpha.
   glm::vec4 run_program(const ProgramPlace& place, TexelRequests* texels) const;
   // Of programs of one draw. Colours are rounded.

@@ -198,7 +198,7 @@ TEST(ProgramDraws, TexelsAndOperationsAreCharged) {
   }
 }
 
-TEST(ProgramDraws, DerivativesArePerPixel) {
+TEST(ProgramDraws, DerivativesArePerPixelOrCell) {
   ProgramTrace scene(8, 8, ShaderParts{.body = R"(
 %x = OpDPdx %v4 %va
 %y = OpDPdy %v4 %va
@@ -207,8 +207,15 @@ OpStore %out %sum
 )"});
   // 0.125 and 0.25 a pixel in x, -0.125 in y.
   scene.fill({{0, 0, 1, 1}, {1, 2, 1, 1}, {0, 0, 0, 1}, {1, 2, 0, 1}});
+  const auto expect = [&](const char* spec, float side) {
+    expect_picture(scene.trace, spec, [side](auto, auto) { return side * glm::vec3(0.125f, 0.25f, 0); });
+  };
   for (const char* spec : kSpecs)
-    expect_picture(scene.trace, spec, [](auto, auto) { return glm::vec3(0.125f, 0.25f, 0); });
+    if (spec != std::string("reference")) expect(spec, 1);
+  expect("reference", 1.0f / 16);
+  expect("msaa:32", 1.0f / 2);
+  expect("msaa:64", 1.0f / 2);  // of 4 x 2 cells, whose longer side counts
+  expect("msaa:128", 1.0f / 4);
 }
 
 const std::string kFragCoord = R"(
