@@ -365,10 +365,9 @@ ProgramPlace SurfaceShader::program_place(const Invocation& invocation, bool is_
   const auto& [triangle, place, footprint] = invocation;
   if (is_color && rules_.colors == SurfaceColors::by_pixel)
     return {.triangle = triangle, .x = place.x, .y = place.y, .stays_in_triangle = true, .is_there = true};
-  const bool in_cells = rules_.derivatives != Derivatives::analytic, is_centre = [&] {
-    const float column = place.u / footprint.yy, row = place.v / footprint.yy;
-    return column - std::floor(column) == 0.5f && row - std::floor(row) == 0.5f;
-  }();
+  const bool in_cells = rules_.derivatives != Derivatives::analytic;
+  const float column = place.u / footprint.yy, row = place.v / footprint.yy;
+  const bool is_centre = column - std::floor(column) == 0.5f && row - std::floor(row) == 0.5f;
   return {.triangle = triangle,
           .x = place.x,
           .y = place.y,
