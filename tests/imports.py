@@ -57,7 +57,7 @@ SHARED_IN_GROUP = {
     "stages/beam/owners_bin.h",
     "stages/beam/position_states-inl.h", "stages/beam/register_mask-inl.h", "stages/beam/casav_fragment.h",
     "stages/beam/casav_merges.h", "stages/beam/region_rules.h", "stages/beam/specks.h", "stages/beam/specks_cost.h", "stages/geometry/clip.h",
-    "stages/geometry/depth_order.h",
+    "stages/geometry/depth_ends.h", "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
     "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/reference_raster.h",
     "stages/raster/reference_raster_cost.h", "stages/raster/reference_spans.h", "stages/raster/traverse.h",

@@ -6,15 +6,13 @@
 #include <cstdint>
 #include <unordered_set>
 
+#include "stages/geometry/depth_ends.h"
+#include "stages/rop/draw_effect.h"
+#include "stages/rop/rop_rules.h"
 #include "stages/surface/program_alpha.h"
 
 namespace beampipe {
 namespace {
-
-bool writes_depth(const DepthState& depth) { return depth.test && depth.write && depth.function != Compare::never; }
-bool passes_always(const DepthState& depth) { return !depth.test || depth.function == Compare::always; }
-bool is_less(Compare function) { return function == Compare::less || function == Compare::less_equal; }
-bool is_greater(Compare function) { return function == Compare::greater || function == Compare::greater_equal; }
 
 // At equal depth, does the draw hide earlier ones?
 bool wins_ties(Compare function) {
@@ -27,7 +25,6 @@ enum class Part { behind, tested, in_front };
 struct Group {
   std::vector<std::uint32_t> parts[3];  // draws, by Part
   std::uint64_t triangles[3] = {};
-  bool is_reversed = false;  // near is at window depth 1
 };
 
 class DepthOrder {
@@ -39,6 +36,8 @@ class DepthOrder {
         geometry_(geometry),
         placements_(placements),
         notes_(notes),
+        clear_depth_(window_clear_depth(trace, frame)),
+        is_reversed_(clear_depth_ == 0),
         repeats_earlier_(frame.draws.size()) {}
 
   void find_groups() {
@@ -140,43 +139,44 @@ class DepthOrder {
       }
     }
     for (auto at = tested_end; at != draws.end(); ++at) put(*at, Part::in_front);
-    choose_direction(group, first, end);
     note_functions(group);
     if (!draws.empty()) groups_.push_back(std::move(group));
   }
 
-  // Of the draws [first, end), those that are not drawn count too: a pre-pass may say which way its draws compare.
-  void choose_direction(Group& group, std::uint32_t first, std::uint32_t end) {
-    std::uint64_t less = 0, greater = 0;  // triangles
-    for (std::uint32_t i = first; i < end; ++i) {
-      if (!depth_of(i).test) continue;
-      if (is_less(depth_of(i).function)) less += triangles_of(i);
-      if (is_greater(depth_of(i).function)) greater += triangles_of(i);
-    }
-    group.is_reversed = greater > less;
-    for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)])
-      if (group.is_reversed ? is_less(depth_of(draw).function) : is_greater(depth_of(draw).function))
-        note(draw, "depth functions less and greater are mixed");
-  }
-
+  // What depths may express wrongly is noted.
   void note_functions(const Group& group) {
     const std::vector<std::uint32_t>& tested = group.parts[static_cast<std::size_t>(Part::tested)];
-    std::size_t last_opaque = 0;  // the number of the last opaque draw, and 1
-    for (std::size_t i = 0; i < tested.size(); ++i)
-      if (is_opaque(tested[i])) last_opaque = i + 1;
-    for (std::size_t i = 0; i < tested.size(); ++i) {
-      const DepthState& depth = depth_of(tested[i]);
-      if (depth.function == Compare::always && i > 0) note(tested[i], "depth function always, after other draws");
-      if (depth.function == Compare::not_equal) note(tested[i], "depth function not_equal");
-      if (depth.function == Compare::equal && !repeats_earlier_[tested[i]])
-        note(tested[i], "depth function equal, without an earlier draw of the same triangles");
-      if (i + 1 >= last_opaque) continue;
-      if (!is_opaque(tested[i])) {
-        note(tested[i], "translucent, before opaque draws");
-      } else if (!acts_as_writer(tested[i])) {
-        note(tested[i], "depth is tested but not written, before other draws that test it");
+    for (const Part part : {Part::behind, Part::in_front})
+      for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(part)]) note_beyond_clear(draw);
+    std::size_t opaque_left =
+        static_cast<std::size_t>(std::ranges::count_if(tested, [&](std::uint32_t draw) { return is_opaque(draw); }));
+    for (const std::uint32_t draw : tested) {
+      const DepthState& depth = depth_of(draw);
+      if (depth.function == Compare::always) note(draw, "depth function always, with depth writes");
+      if (depth.function == Compare::not_equal) note(draw, "depth function not_equal");
+      if (depth.function == Compare::equal && !repeats_earlier_[draw])
+        note(draw, "depth function equal, without an earlier draw of the same triangles");
+      if (is_less(depth.function) || is_greater(depth.function)) note_beyond_clear(draw);
+      if (is_opaque(draw)) {
+        --opaque_left;
+        if (!acts_as_writer(draw)) note(draw, "depth is tested but not written");
+      } else if (opaque_left > 0) {
+        note(draw, "translucent, before opaque draws");
       }
     }
+  }
+
+  // Draws of whose depths some may not pass where the buffer is cleared.
+  void note_beyond_clear(std::uint32_t draw) {
+    const DepthState& depth = depth_of(draw);
+    if (passes_always(depth)) return;
+    if (is_reversed_ ? is_less(depth.function) : is_greater(depth.function))
+      return note(draw, "depth functions less and greater are mixed");
+    const bool passes_between =
+        (is_less(depth.function) && clear_depth_ == 1) || (is_greater(depth.function) && clear_depth_ == 0);
+    const bool passes_ends = passes_equal(depth.function) && depth.bias == DepthBias{};
+    if (!passes_between || (!passes_ends && reaches_ends(trace_, frame_, frame_.draws[draw])))
+      note(draw, "depth that may not pass where the depth buffer was cleared");
   }
 
   // Does the draw's depth count for later draws? It may have been written by a pre-pass of the same triangles.
@@ -189,6 +189,7 @@ class DepthOrder {
   void find_repetitions(std::uint32_t first, std::uint32_t end) {
     std::unordered_set<std::uint32_t> written;
     for (std::uint32_t i = first; i < end; ++i) {
+      if (may_be_cut_out(trace_, frame_.draws[i])) continue;
       repeats_earlier_[i] = written.contains(geometry_[i]);
       if (writes_depth(depth_of(i))) written.insert(geometry_[i]);
     }
@@ -198,12 +199,12 @@ class DepthOrder {
     for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)]) {
       const DepthState& depth = depth_of(draw);
       DrawPlacement& placement = placements_[draw];
-      // Near is at window depth 0, or at 1 in reversed groups. An eighth of the interval stays free at both ends, so
+      // Near is at window depth 0, or at 1 if reversed. An eighth of the interval stays free at both ends, so
       // that neighbours do not touch; nothing does if depths are kept.
       const double width = interval.is_kept ? 1 : 0.75 * interval.width;
       const double nearest = interval.nearest + (interval.is_kept ? 0 : 0.125 * interval.width);
-      placement.window_scale = group.is_reversed ? -width : width;
-      placement.window_offset = group.is_reversed ? nearest + width : nearest;
+      placement.window_scale = is_reversed_ ? -width : width;
+      placement.window_offset = is_reversed_ ? nearest + width : nearest;
       const double near = depth.near, far = depth.far;  // window depths at -1 and 0
       placement.depth_scale = placement.window_scale * (far - near);
       placement.depth_offset = placement.window_scale * far + placement.window_offset;
@@ -234,24 +235,31 @@ class DepthOrder {
   const std::vector<std::uint32_t>& geometry_;
   std::vector<DrawPlacement>& placements_;
   std::vector<DrawNote>& notes_;
+  const float clear_depth_;            // window depth
+  const bool is_reversed_;             // near is at window depth 1
   std::vector<bool> repeats_earlier_;  // by draw
   std::vector<Group> groups_;          // in the order of painting
 };
 
-}  // namespace
-
-bool passes_equal(Compare function) {
-  return function == Compare::less_equal || function == Compare::equal || function == Compare::greater_equal;
-}
-
-bool is_translucent(const Trace& trace, const Draw& draw) {
-  const auto is_blended = [&](std::uint32_t material) {
-    return material != kNoMaterial && trace.materials[material].alpha_mode == AlphaMode::blend;
+// Of materials, not of programs.
+bool has_material(const Trace& trace, const Draw& draw, AlphaMode mode) {
+  const auto has_mode = [&](std::uint32_t material) {
+    return material != kNoMaterial && trace.materials[material].alpha_mode == mode;
   };
   if (draw.kd) return false;
-  if (draw.program) return program_alpha_mode(trace, draw, DrawOrder::by_depth) == AlphaMode::blend;
-  if (draw.material) return is_blended(*draw.material);
-  return std::ranges::any_of(trace.meshes[draw.mesh].materials, is_blended);
+  return draw.material ? has_mode(*draw.material) : std::ranges::any_of(trace.meshes[draw.mesh].materials, has_mode);
+}
+
+}  // namespace
+
+bool is_translucent(const Trace& trace, const Draw& draw) {
+  if (draw.kd || !draw.program) return has_material(trace, draw, AlphaMode::blend);
+  return program_alpha_mode(trace, draw, DrawOrder::by_depth) == AlphaMode::blend;
+}
+
+bool may_be_cut_out(const Trace& trace, const Draw& draw) {
+  if (draw.kd || !draw.program) return has_material(trace, draw, AlphaMode::mask);
+  return program_alpha_mode(trace, draw, DrawOrder::of_api) == AlphaMode::mask;
 }
 
 void order_depths(const Trace& trace, const Frame& frame, const std::vector<std::uint32_t>& geometry,

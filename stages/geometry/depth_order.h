@@ -8,8 +8,10 @@
 // If nothing in a group writes depth, all of it is painted. Painted triangles are flat: each has one depth, nearer than
 // that of the triangle painted before it.
 //
+// Near is at window depth 1 where depth is cleared to 0.
+//
 // Depths of the frame. Those of the group that tests most triangles stay in -1..0, with their precision: window depth
-// minus 1, or minus the window depth if the group's draws compare with greater. What lies behind goes to 0..1, what
+// minus 1, or minus the window depth if near is at 1. What lies behind goes to 0..1, what
 // lies in front to -2..-1; each part of a group has an equal share there.
 //
 // At equal depth the earlier triangle wins in every technique. So triangles of draws that win against earlier ones
@@ -30,10 +32,10 @@ namespace beampipe {
 void order_depths(const Trace& trace, const Frame& frame, const std::vector<std::uint32_t>& geometry,
                   std::vector<DrawPlacement>& placements, std::vector<DrawNote>& notes);
 
-// Does a depth pass that is equal to the stored one, but not every depth?
-bool passes_equal(Compare function);
-
 // Does a triangle of the draw have a material that is blended?
 bool is_translucent(const Trace& trace, const Draw& draw);
+
+// May the draw's material or program leave out parts of triangles?
+bool may_be_cut_out(const Trace& trace, const Draw& draw);
 
 }  // namespace beampipe

@@ -38,8 +38,12 @@ struct PlaceOrder {
           return a < b ? -1 : 1;
     const auto rest = [](const Draw& draw) {
       const Viewport viewport = draw.state.viewport.value_or(Viewport{});  // the width of none is 0
-      return std::tuple(draw.state.depth.near, draw.state.depth.far, viewport.x, viewport.y, viewport.width,
-                        viewport.height);
+      const bool has_scissor = draw.state.scissor.has_value();
+      const Scissor scissor = draw.state.scissor.value_or(Scissor{});
+      const DepthState& depth = draw.state.depth;
+      return std::tuple(depth.near, depth.far, depth.bias.constant, depth.bias.slope, depth.bias.clamp, depth.clip,
+                        viewport.x, viewport.y, viewport.width, viewport.height, has_scissor, scissor.x, scissor.y,
+                        scissor.width, scissor.height);
     };
     return rest(one) < rest(other) ? -1 : rest(other) < rest(one) ? 1 : 0;
   }

@@ -7,31 +7,11 @@
 #include "simd/vertex_transform.h"
 #include "stages/geometry/depth_order.h"
 #include "stages/geometry/draw_geometry.h"
+#include "stages/rop/draw_effect.h"
 #include "stages/rop/rop_rules.h"
 
 namespace beampipe {
 namespace {
-
-constexpr std::uint32_t kColorChannels = kRedChannel | kGreenChannel | kBlueChannel;
-
-bool is(const Blend& blend, BlendFactor source, BlendFactor destination) {
-  return blend.color == BlendEquation{source, destination, BlendOperation::add};
-}
-
-bool replaces(const Blend& blend) { return is(blend, BlendFactor::one, BlendFactor::zero); }
-bool keeps_color(const Blend& blend) { return is(blend, BlendFactor::zero, BlendFactor::one); }
-bool is_alpha_blending(const Blend& blend) { return blend.color == BlendEquation{}; }
-
-// The same where opacity is 1?
-bool replaces_where_opaque(const Blend& blend) {
-  return is_alpha_blending(blend) || replaces(blend) ||
-         is(blend, BlendFactor::one, BlendFactor::one_minus_source_alpha) ||
-         is(blend, BlendFactor::source_alpha, BlendFactor::zero);
-}
-
-bool writes_color(const DrawState& state) {
-  return (state.color_mask & kColorChannels) != 0 && !(state.blend && keeps_color(*state.blend));
-}
 
 // A side in 1/256 px, at most as far away as the frame's. `end`: of the frame, in pixels.
 std::int32_t on_grid(double pixels, double end) {
@@ -111,10 +91,6 @@ class Planner {
            !has_stencil_test(state);
   }
 
-  static bool has_stencil_test(const DrawState& state) {
-    return state.stencil && state.stencil->function != Compare::always;
-  }
-
   // Notes what is left out, except for pre-passes.
   bool can_draw(const Draw& draw, DrawPlacement& placement) {
     const DrawState& state = draw.state;
@@ -148,8 +124,11 @@ class Planner {
     std::unordered_set<std::uint32_t> drawn_again;
     for (std::size_t i = frame_.draws.size(); i-- > 0;) {
       const DepthState& depth = frame_.draws[i].state.depth;
-      if (is_pre_pass_[i] && !drawn_again.contains(geometry[i])) leave_out(frame_.draws[i], "depth without colour");
-      if (plan.placements[i].is_drawn && depth.test && passes_equal(depth.function)) drawn_again.insert(geometry[i]);
+      if (is_pre_pass_[i] && (!drawn_again.contains(geometry[i]) || may_be_cut_out(trace_, frame_.draws[i])))
+        leave_out(frame_.draws[i], "depth without colour");
+      if (plan.placements[i].is_drawn && depth.test && passes_equal(depth.function) &&
+          !may_be_cut_out(trace_, frame_.draws[i]))
+        drawn_again.insert(geometry[i]);
       if (depth.cleared_before) drawn_again.clear();
     }
   }
@@ -162,7 +141,8 @@ class Planner {
 }  // namespace
 
 DrawPlan plan_draws(const Trace& trace, const Frame& frame, DrawOrder order) {
-  if (std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.state == DrawState{}; })) return {};
+  if (std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.state == DrawState{} && !draw.program; }))
+    return {};
   Planner planner(trace, frame);
   planner.run(order);
   return std::move(planner.plan);

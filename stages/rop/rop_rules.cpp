@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "stages/rop/draw_effect.h"
+
 namespace beampipe {
 namespace {
-
-constexpr std::uint32_t kColorChannels = kRedChannel | kGreenChannel | kBlueChannel;
 
 // A colour that is not multiplied by its alpha, over what is stored.
 constexpr Blend kOver{BlendEquation{}, BlendEquation{BlendFactor::one, BlendFactor::one_minus_source_alpha}};

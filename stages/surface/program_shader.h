@@ -3,10 +3,10 @@
 // Inputs come from Mesh::varyings, of planes through the vertices as they were before they were snapped, as Mesa's
 // software driver has them: snapped ones are up to 1/512 px beside their place, which in a triangle of a pixel is much.
 //
-// Derivatives are per pixel, whatever part of it a colour stands for: differences between a pixel and its neighbours in
-// a 2x2 quad, or between a place and those one pixel to the right and below, from the planes. These two are helper
-// invocations, which cost as much as others. Where cells of a pixel are shaded, by the reference and by multisampling
-// above 16 samples, they are per cell: as in a picture of that resolution.
+// Derivatives are differences between squares: those of a 2x2 quad, or a place and those one square to the right and
+// below, from the planes. These two are helper invocations, which cost as much as others. A square is a pixel, whatever
+// part of it a colour stands for. Only where cells of a pixel are shaded, by the reference and by multisampling above
+// 16 samples, it is a cell: as in a picture of that resolution.
 //
 // Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point, and
 // all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1.
@@ -35,6 +35,7 @@ struct ProgramPlace {
   bool in_quad = false;            // derivatives are those of a quad of such squares
   bool stays_in_triangle = false;  // inputs are those of the nearest point of the triangle, about
   bool is_there = false;           // who asks knows that the surface is there, or near it in the pixel
+  bool operator==(const ProgramPlace&) const = default;
 };
 
 class ProgramShader {

@@ -379,12 +379,22 @@ ProgramPlace SurfaceShader::program_place(const Invocation& invocation, bool is_
 }
 
 void SurfaceShader::run_programs(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {
-  programs_.shade(places, colors, texels);
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  // Where a pixel has one colour of a triangle, its cells ask for the same again and again.
+  std::vector<ProgramPlace> others;
+  std::vector<std::size_t> number_of;  // of each place in `others`
+  const bool repeats = !texels && rules_.colors == SurfaceColors::by_pixel;
+  for (std::size_t i = 0; repeats && i < places.size(); ++i) {
+    if (i == 0 || places[i] != places[i - 1]) others.push_back(places[i]);
+    number_of.push_back(others.size() - 1);
+  }
+  const std::size_t count = repeats ? others.size() : places.size();
+  programs_.shade(repeats ? others : places, colors, texels);
+  for (std::size_t i = 0; i < count; ++i) {
     glm::vec3 color(colors[i]);
     round_to(rules_.stored_as, color);
     colors[i] = glm::vec4(color, colors[i].a);
   }
+  for (std::size_t i = places.size(); repeats && i-- > 0;) colors[i] = colors[number_of[i]];
 }
 
 template <class Visit>

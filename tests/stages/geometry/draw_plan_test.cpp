@@ -292,8 +292,8 @@ TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
       {"no depth test, between draws that have one", false, 1, 7},
       {"depth function not_equal", false, 1, 1},
       {"depth function equal, without an earlier draw of the same triangles", false, 1, 1},
-      {"depth function always, after other draws", false, 1, 1},
-      {"depth is tested but not written, before other draws that test it", false, 1, 1}};
+      {"depth function always, with depth writes", false, 1, 1},
+      {"depth is tested but not written", false, 1, 1}};
   EXPECT_EQ(draws.notes(), expected);
 }
 
@@ -449,6 +449,56 @@ TEST(DrawPlan, WhichFramesNeedTheApisOrder) {
   EXPECT_TRUE(needs([](Draw& draw) { draw.state.stencil = Stencil{.function = Compare::equal}; }));
   EXPECT_TRUE(needs([](Draw& draw) { draw.state.depth.function = Compare::not_equal; }));
   EXPECT_TRUE(needs([](Draw& draw) { draw.state.color_mask = kRedChannel; }));
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.stencil_back = Stencil{.function = Compare::equal}; }));
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.depth.write = false; })) << "its triangles may overlap";
+  EXPECT_TRUE(needs([](Draw& draw) { draw.state.depth.function = Compare::greater, draw.state.depth.write = false; }));
+}
+
+// A first draw of one triangle, at depth 0.5 unless said otherwise.
+TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
+  const auto needs = [](auto&& change) {
+    Draws draws;
+    Draw& draw = draws.add();
+    draw.state.depth.cleared_before = true;
+    change(draw, draws.trace.meshes[0].positions);
+    return needs_api_order(draws.trace, draws.frame);
+  };
+  using Places = std::vector<glm::vec3>;
+  const auto put = [](Places& places, float z) {
+    for (glm::vec3& place : places) place.z = z;  // -1 at the near plane, 1 at the far plane
+  };
+  EXPECT_FALSE(needs([](Draw&, Places&) {}));
+  EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.function = Compare::always; })) << "later ones hide";
+  EXPECT_FALSE(needs([](Draw& draw, Places&) { draw.state.depth.test = false; })) << "painted";
+  EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.function = Compare::equal; })) << "equal to what?";
+  EXPECT_TRUE(needs([&](Draw&, Places& places) { put(places, 1); })) << "is not less than 1";
+  EXPECT_FALSE(
+      needs([&](Draw& draw, Places& places) { put(places, 1), draw.state.depth.function = Compare::less_equal; }));
+  EXPECT_FALSE(needs([&](Draw&, Places& places) { put(places, 1), places[0].z = 0; })) << "1 along a line";
+  EXPECT_TRUE(needs([&](Draw& draw, Places& places) {
+    put(places, 1), places[0].z = 2, places[1].z = 0, draw.state.depth.clip = false;
+  })) << "1 where it is beyond";
+  EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.near = draw.state.depth.far = 1; }));
+  EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.5f; })) << "0.5 and 0.5 are 1";
+  EXPECT_FALSE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.25f; }));
+  // Window depth rises from 0.5 to 0.75 over 8 pixels: by 1/32 in each. Eight times that more is 1.
+  EXPECT_FALSE(needs([&](Draw& draw, Places& places) { places[1].z = 0.5f, draw.state.depth.bias.slope = 7; }));
+  EXPECT_TRUE(needs([&](Draw& draw, Places& places) { places[1].z = 0.5f, draw.state.depth.bias.slope = 9; }));
+}
+
+TEST(DrawPlan, APrePassOfOtherPixelsNeedsTheApisOrder) {
+  const auto needs = [](auto&& change) {
+    Draws draws;
+    draws.add().state.color_mask = 0;
+    draws.add(Compare::equal).mesh = 0;
+    draws.trace.materials.emplace_back().alpha_mode = AlphaMode::mask;
+    change(draws.frame.draws[0], draws.frame.draws[1]);
+    return needs_api_order(draws.trace, draws.frame);
+  };
+  EXPECT_FALSE(needs([](Draw&, Draw&) {}));
+  EXPECT_TRUE(needs([](Draw&, Draw& second) { second.state.scissor = Scissor{0, 0, 8, 8}; }));
+  EXPECT_TRUE(needs([](Draw& first, Draw&) { first.material = 0; }));
+  EXPECT_TRUE(needs([](Draw&, Draw& second) { second.material = 0; }));
 }
 
 }  // namespace beampipe::draw_plan_test
