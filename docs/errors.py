@@ -45,4 +45,5 @@ def main(folders):
                       f"{1000 * result['error']['rmse']:.2f}", f"{1000 * result['error']['bias']:+.2f}", emr(result))
 
 
-main(sys.argv[1:])
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -185,10 +185,10 @@ Program random_program(Random& random) {
     state.depth.cleared_before = std::exchange(cleared, false);
     return state;
   };
+  const bool reversed = random.one_in(3);
+  const std::array functions = reversed ? std::array{Compare::greater, Compare::greater_equal}
+                                        : std::array{Compare::less, Compare::less_equal};
   for (std::int64_t groups = random.integer(1, 3), group = 0; group < groups; ++group) {
-    const bool reversed = random.one_in(3);
-    const std::array functions = reversed ? std::array{Compare::greater, Compare::greater_equal}
-                                          : std::array{Compare::less, Compare::less_equal};
     program.clear_depth(reversed ? 0 : 1);
     cleared = group > 0;
     for (std::int64_t i = random.integer(0, 2); i-- > 0;)
