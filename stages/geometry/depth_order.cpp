@@ -179,6 +179,13 @@ class DepthOrder {
       note(draw, "depth that may not pass where the depth buffer was cleared");
   }
 
+  // A pre-pass says nothing if it keeps the nearest depth.
+  void note_pre_pass(std::uint32_t draw) {
+    const Compare function = depth_of(draw).function;
+    if (is_less(function) || is_greater(function)) return note_beyond_clear(draw);
+    note(draw, "depth without colour, by a function other than less and greater");
+  }
+
   // Does the draw's depth count for later draws? It may have been written by a pre-pass of the same triangles.
   bool acts_as_writer(std::uint32_t draw) const {
     const DepthState& depth = depth_of(draw);
@@ -189,6 +196,7 @@ class DepthOrder {
   void find_repetitions(std::uint32_t first, std::uint32_t end) {
     std::unordered_set<std::uint32_t> written;
     for (std::uint32_t i = first; i < end; ++i) {
+      if (!placements_[i].is_drawn && writes_depth(depth_of(i))) note_pre_pass(i);
       if (may_be_cut_out(trace_, frame_.draws[i])) continue;
       repeats_earlier_[i] = written.contains(geometry_[i]);
       if (writes_depth(depth_of(i))) written.insert(geometry_[i]);
@@ -199,8 +207,8 @@ class DepthOrder {
     for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)]) {
       const DepthState& depth = depth_of(draw);
       DrawPlacement& placement = placements_[draw];
-      // Near is at window depth 0, or at 1 if reversed. An eighth of the interval stays free at both ends, so
-      // that neighbours do not touch; nothing does if depths are kept.
+      // Near is at window depth 0, or at 1 if reversed. An eighth of the interval stays free at both ends, so that
+      // neighbours do not touch; nothing does if depths are kept.
       const double width = interval.is_kept ? 1 : 0.75 * interval.width;
       const double nearest = interval.nearest + (interval.is_kept ? 0 : 0.125 * interval.width);
       placement.window_scale = is_reversed_ ? -width : width;

@@ -11,8 +11,8 @@
 // Near is at window depth 1 where depth is cleared to 0.
 //
 // Depths of the frame. Those of the group that tests most triangles stay in -1..0, with their precision: window depth
-// minus 1, or minus the window depth if near is at 1. What lies behind goes to 0..1, what
-// lies in front to -2..-1; each part of a group has an equal share there.
+// minus 1, or minus the window depth if near is at 1. What lies behind goes to 0..1, what lies in front to -2..-1; each
+// part of a group has an equal share there.
 //
 // At equal depth the earlier triangle wins in every technique. So triangles of draws that win against earlier ones
 // (DrawPlacement::last_wins) come first, in reverse order.

@@ -486,7 +486,7 @@ TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
   EXPECT_TRUE(needs([&](Draw& draw, Places& places) { places[1].z = 0.5f, draw.state.depth.bias.slope = 9; }));
 }
 
-TEST(DrawPlan, APrePassOfOtherPixelsNeedsTheApisOrder) {
+TEST(DrawPlan, APrePassOfOtherDepthsNeedsTheApisOrder) {
   const auto needs = [](auto&& change) {
     Draws draws;
     draws.add().state.color_mask = 0;
@@ -498,6 +498,7 @@ TEST(DrawPlan, APrePassOfOtherPixelsNeedsTheApisOrder) {
   EXPECT_FALSE(needs([](Draw&, Draw&) {}));
   EXPECT_TRUE(needs([](Draw&, Draw& second) { second.state.scissor = Scissor{0, 0, 8, 8}; }));
   EXPECT_TRUE(needs([](Draw& first, Draw&) { first.material = 0; }));
+  EXPECT_TRUE(needs([](Draw& first, Draw&) { first.state.depth.function = Compare::always; }));
   EXPECT_TRUE(needs([](Draw&, Draw& second) { second.material = 0; }));
 }
 
