@@ -100,6 +100,7 @@ struct DrawState {
   bool front_is_clockwise = false;  // as seen in the picture
   std::optional<Blend> blend{};     // else what the material says
   std::uint32_t color_mask = kAllChannels;
+  bool alpha_to_coverage = false;         // alpha is the part of a pixel's samples that a fragment takes
   std::optional<Stencil> stencil{};       // else no test
   std::optional<Stencil> stencil_back{};  // of back faces; else as that of front faces
   // The whole stencil buffer was cleared to this, 0..255, right before the draw.

@@ -139,7 +139,8 @@ void BinObserver::describe(const Pair& pair, const Tile& pixel, PixelObserver& o
   }
   const std::uint32_t index = observer.fragment_of(pair.triangle, fate);
   HistoryFragment& noted = observer.history.fragments[index];
-  for (const Fragment& fragment : fragments) {  // one, or none
+  for (const Fragment& fragment : fragments) {  // one, or none, and what is discarded after its tests
+    if (fragment.is_discarded) continue;
     noted.area = fragment.alpha;
     if (!masks_) continue;
     noted.is_tiny = fragment.tiny;

@@ -61,7 +61,7 @@ FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules, DrawO
              with_input(rules, run)) {
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
     if (triangles.is_opaque(i)) continue;
-    if (shader.is_cutout(i)) {
+    if (shader.is_cutout(i) || shader.has_verdict(i)) {
       has_cutouts_ = true;
     } else if (triangles.order == DrawOrder::by_depth) {
       has_blending_ = true;

@@ -33,7 +33,7 @@ struct FrameContext {
   FrameContext(const FrameContext&) = delete;
   FrameContext& operator=(const FrameContext&) = delete;
 
-  // Does a triangle let through what lies behind it, somewhere? In the API's order, only cutouts do.
+  // Does a triangle let through what lies behind it, somewhere? In the API's order, only what shaders cut out does.
   bool has_alpha() const { return has_cutouts_ || has_blending_; }
   bool has_cutouts() const { return has_cutouts_; }
   bool has_blending() const { return has_blending_; }

@@ -47,6 +47,7 @@ void OrderedUnit::draw(ShadeAt at, AlphaCoverage alpha) {
     count_by_pixel(fragments, bin_.tile, sampling_.grid, bin_.pixel_counter("fragments"));
     ordered_test(in, rules, testing.timed(), surface_, fragments, accesses);
     memory_.test_in_order(accesses, testing.counters);
+    raster.test_alpha_after_tests(sampling_, at);
     const std::vector<glm::vec4> colors = shade.colors(fragments);
     ordered_blend(in, rules, {fragments, colors}, blending.timed(), surface_, accesses);
     memory_.blend_in_order(accesses, blending.counters);

@@ -56,16 +56,25 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
   return drawn_;
 }
 
-void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
+void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at, bool is_after_tests) {
   const BinStage testing = bin_.stage(StageId::alpha_test, pass_);
-  test_alpha(sampling, at, testing.timed(), bin_.texels(), fragments_);
+  test_alpha(sampling, at, is_after_tests, testing.timed(), bin_.texels(), fragments_);
   bin_.charge_texels(testing);
 }
 
-void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at, StageCounters& counters, TexelRequests* texels,
-                                  std::vector<SampleFragment>& fragments) const {
+void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at, bool is_after_tests, StageCounters& counters,
+                                  TexelRequests* texels, std::vector<SampleFragment>& fragments) const {
   const SamplePlaces places(bin_, sampling, at);
-  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments)}, counters, fragments, texels);
+  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments), is_after_tests}, counters, fragments,
+             texels);
+}
+
+void SampleRasterUnit::test_alpha_after_tests(const Sampling& sampling, ShadeAt at) {
+  const SurfaceShader& shader = bin_.context.shader;
+  if (tests_alpha() && std::ranges::any_of(fragments_, [&](const SampleFragment& fragment) {
+        return shader.tests_early(fragment.triangle);
+      }))
+    test_alpha(sampling, at, true);
 }
 
 void SampleRasterUnit::tell_all(const TriangleList& drawn, const Sampling& sampling, ShadeAt at) const {
@@ -73,7 +82,8 @@ void SampleRasterUnit::tell_all(const TriangleList& drawn, const Sampling& sampl
   StageCounters unused;
   sample_raster({bin_.triangles(), bin_.tile, sampling}, drawn, unused, fragments);
   const std::vector<SampleFragment> before_alpha = fragments;
-  if (tests_alpha()) test_alpha(sampling, at, unused, nullptr, fragments);
+  for (const bool is_after_tests : {false, true})
+    if (tests_alpha()) test_alpha(sampling, at, is_after_tests, unused, nullptr, fragments);
   bin_.observer()->has_fragments(sampling, before_alpha, fragments);
 }
 

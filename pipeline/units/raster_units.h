@@ -105,6 +105,10 @@ class SampleRasterUnit {
   // Where no depth is tested, nothing is left out.
   void keeps_hidden() { keeps_hidden_ = true; }
 
+  // Of the fragments that passed depth and stencil: takes away what shaders discard that ask for early tests. For the
+  // body of pass(), with the same sampling.
+  void test_alpha_after_tests(const Sampling& sampling, ShadeAt at);
+
   // Draws translucent triangles after all others, far to near by the mean depth of their vertices.
   void sorts_translucent() { sorts_translucent_ = true; }
 
@@ -131,7 +135,7 @@ class SampleRasterUnit {
       sample_raster({bin_.triangles(), bin_.tile, sampling}, batch, stage_.timed(), fragments_,
                     closed ? &*closed : nullptr);
       bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
-      if (tests_alpha()) test_alpha(sampling, at);
+      if (tests_alpha()) test_alpha(sampling, at, false);
       body(fragments_);
     });
   }
@@ -139,9 +143,9 @@ class SampleRasterUnit {
  private:
   const TriangleList& drawn_triangles();
   bool tests_alpha() const { return bin_.context.has_cutouts() && translucent_ != Translucent::alone; }
-  void test_alpha(const Sampling& sampling, ShadeAt at);
-  void test_alpha(const Sampling& sampling, ShadeAt at, StageCounters& counters, TexelRequests* texels,
-                  std::vector<SampleFragment>& fragments) const;
+  void test_alpha(const Sampling& sampling, ShadeAt at, bool is_after_tests);
+  void test_alpha(const Sampling& sampling, ShadeAt at, bool is_after_tests, StageCounters& counters,
+                  TexelRequests* texels, std::vector<SampleFragment>& fragments) const;
   // Tells the observer which samples the triangles cover, whether hidden or not.
   void tell_all(const TriangleList& drawn, const Sampling& sampling, ShadeAt at) const;
 

@@ -44,7 +44,14 @@ class AlphaMask {
   void operator()(Fragment& fragment) {
     if (!shader_.is_masked(fragment.triangle)) return;
     ++work.fragments;
-    const float part = shader_.is_cutout(fragment.triangle) ? cut_out(fragment) : let_through(fragment);
+    const bool has_verdict = shader_.has_verdict(fragment.triangle);
+    float part = 1.0f;
+    if (shader_.is_cutout(fragment.triangle)) {
+      part = cut_out(fragment);
+    } else if (!has_verdict) {
+      part = let_through(fragment);
+    }
+    if (has_verdict && part > 0) part *= judge(fragment);
     fragment.alpha *= part;
     fragment.tiny |= fragment.mask.none();
     fragment.whole &= part >= 1.0f;
@@ -162,6 +169,33 @@ class AlphaMask {
     return opacity;
   }
 
+  // By a single invocation, of what has not been discarded. Sets the fragment's depth.
+  float judge(Fragment& fragment) {
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    const FragmentVerdict verdict = shader_.verdict(fragment.triangle, fragment.pixel, fragment.centroid_u,
+                                                    fragment.centroid_v, 1.0f, true, texels_);
+    end_request(texels_);
+    if (verdict.depth) {
+      fragment.plane = {*verdict.depth, 0.0f, 0.0f};
+      fragment.z_min = fragment.z_max = fragment.centroid_z = *verdict.depth;
+    }
+    if (fragment.mask.none()) return verdict.coverage * static_cast<float>(std::popcount(verdict.samples)) / 32;
+    const auto covered = static_cast<float>(fragment.mask.count());
+    WideMask of_samples, left;
+    for (std::size_t word = 0; word < patterns_.size(); ++word)
+      of_samples.words[word] = fragment.mask.words[word] & verdict.samples;
+    const ShadingPlace pixel = shader_.place(fragment.pixel, 0, 0);
+    const TakenPositions taken(verdict, pixel.x, pixel.y, static_cast<std::uint32_t>(32 * patterns_.size()));
+    const auto take = [&](std::size_t position, float, float) {
+      ++work.ranked;
+      if (taken.takes(static_cast<std::uint32_t>(position))) left.set(position);
+    };
+    for_each_position(of_samples, patterns_, take, [] {});
+    ++work.masks, ++work.shares;
+    fragment.mask = left;
+    return verdict.coverage * static_cast<float>(of_samples.count()) / covered;
+  }
+
   // The part of the area of width `width` that a cutout covers.
   float covered_part(const Fragment& fragment, float u, float v, float width) {
     work.alphas += shader_.work(fragment.triangle).alpha;
@@ -188,7 +222,17 @@ class AlphaMask {
 void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
                 StageCounters& counters, std::vector<Fragment>& fragments, TexelRequests* texels) {
   AlphaMask mask(shader, patterns, places, texels);
-  for (Fragment& fragment : fragments) mask(fragment);
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const bool is_early = shader.tests_early(fragments[i].triangle);
+    Fragment discarded;
+    if (is_early) discarded = fragments[i];
+    mask(fragments[i]);
+    if (!is_early) continue;
+    discarded.mask = without(discarded.mask, fragments[i].mask);
+    discarded.alpha -= fragments[i].alpha;
+    discarded.is_discarded = true, discarded.whole = false;
+    if (!discarded.mask.none()) fragments.insert(fragments.begin() + static_cast<std::ptrdiff_t>(++i), discarded);
+  }
   const std::size_t before = fragments.size();
   std::erase_if(fragments, [](const Fragment& fragment) { return fragment.alpha <= 0; });
   mask.work.dropped = before - fragments.size();

@@ -7,6 +7,10 @@
 // it is covered or empty, nothing else is looked up. The fragment's area shrinks by the same
 // share. A speck, which has no positions, is tested or shrinks as a whole. A translucent surface takes the part of its
 // positions and of its area that is its opacity (stages/surface/opacity.h).
+//
+// In the API's order, shaders say more (FragmentVerdict): which positions are left, which part of them and of the area,
+// and the depth of the whole fragment. If a shader asks for early tests, what it takes away becomes a fragment of its
+// own, which is tested and has no colour.
 #pragma once
 
 #include <vector>
@@ -19,7 +23,8 @@
 
 namespace beampipe {
 
-// Drops fragments of which nothing is left. `patterns`: the mask positions. Adds the texels that are read to `texels`,
+// Drops fragments of which nothing is left, and adds those that are discarded after their tests, each right after what
+// is left of it. `patterns`: the mask positions. Adds the texels that are read to `texels`,
 // unless it is null: a request for each word of a mask, whose positions are tested at once, or for all parts of a
 // pixel.
 void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,

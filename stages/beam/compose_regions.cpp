@@ -52,6 +52,7 @@ class RegionComposer {
     const std::uint32_t draw = bin_.triangles.draws[fragment.triangle];
     bin_.rules.clear_before(draw, pixels_.next_clear, [this](const RopClear& what) { clear(what); });
     start(bin_.rules.of(bin_.triangles, fragment.triangle), bin_.triangles.triangles[fragment.triangle]);
+    writes_color_ = rule_->writes_color() && !fragment.is_discarded;
     look_at(fragment, draw);
     if (fragment.mask.none()) return wait(fragment, color);
     meet(fragment);
@@ -78,7 +79,6 @@ class RegionComposer {
     const Stencil& stencil = rule.stencil_of(triangle);
     if (&rule == rule_ && &stencil == stencil_) return;
     rule_ = &rule, stencil_ = &stencil;
-    writes_color_ = rule.writes_color();
     of_blend_ = stored_color_cost(rule, 4);
     of_test_ = of_pass_ = of_depth_fail_ = of_fail_ = {};
     if (!rule.has_stencil) return;

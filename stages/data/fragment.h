@@ -17,6 +17,7 @@ struct Fragment {
   bool front;                    // as in SetupTriangle
   bool tiny;                     // a speck: it covers no mask position
   bool whole;                    // it covers every mask position, and its area is 1
+  bool is_discarded;             // after it was tested: it has no colour
   float centroid_u, centroid_v;  // of the clipped triangle: pixels from the pixel's upper left corner
   float centroid_z;              // depth at the centroid; only set with clipped_depth and for specks, else 0
   float alpha;                   // area of the clipped triangle, 0..1

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <optional>
 
 #include "simd/sample_pattern.h"
 #include "stages/data/pair.h"
@@ -49,10 +50,11 @@ inline Tile cells_of(const Tile& tile, const CellGrid& grid) {
 }
 
 struct SampleFragment {
-  std::uint32_t triangle;  // index into SetupTriangles
-  std::uint32_t quad;      // the same number for all cells of one triangle in one 2x2 quad
-  std::int32_t x, y;       // cell, frame coordinates
-  std::uint32_t mask;      // bit s: the triangle covers sample s of the pattern; not 0
+  std::uint32_t triangle;           // index into SetupTriangles
+  std::uint32_t quad;               // the same number for all cells of one triangle in one 2x2 quad
+  std::int32_t x, y;                // cell, frame coordinates
+  std::uint32_t mask;               // bit s: the triangle covers sample s of the pattern; not 0
+  std::optional<float> depth = {};  // of all samples, in place of the triangle's: -1..0
 };
 
 // The fragment's cell in the tile: pixel (row by row) x cells per pixel + cell within the pixel.

@@ -9,6 +9,7 @@
 #include "stages/geometry/draw_geometry.h"
 #include "stages/rop/draw_effect.h"
 #include "stages/rop/rop_rules.h"
+#include "stages/surface/program_alpha.h"
 
 namespace beampipe {
 namespace {
@@ -53,11 +54,10 @@ void keep_depths(const DepthState& depth, DrawPlacement& placement) {
 
 class Planner {
  public:
-  Planner(const Trace& trace, const Frame& frame) : trace_(trace), frame_(frame), is_pre_pass_(frame.draws.size()) {
-    plan.placements.resize(frame.draws.size());
-  }
+  Planner(const Trace& trace, const Frame& frame) : trace_(trace), frame_(frame), is_pre_pass_(frame.draws.size()) {}
 
   void run(DrawOrder draw_order) {
+    plan.placements.resize(frame_.draws.size());
     for (std::uint32_t i = 0; i < frame_.draws.size(); ++i) {
       const Draw& draw = frame_.draws[i];
       DrawPlacement& placement = plan.placements[i];
@@ -77,12 +77,17 @@ class Planner {
     order_depths(trace_, frame_, geometry, plan.placements, plan.notes);
   }
 
+  void note_requests() {
+    for (const Draw& draw : frame_.draws)
+      for (const std::string& request : fragment_requests(trace_, draw)) note(draw, request, false);
+  }
+
   DrawPlan plan;
 
  private:
   void leave_out(const Draw& draw, const char* reason) { note(draw, reason, true); }
 
-  void note(const Draw& draw, const char* reason, bool left_out) {
+  void note(const Draw& draw, const std::string& reason, bool left_out) {
     add_note(plan.notes, reason, left_out, 1, trace_.meshes[draw.mesh].triangles.size());
   }
 
@@ -141,10 +146,10 @@ class Planner {
 }  // namespace
 
 DrawPlan plan_draws(const Trace& trace, const Frame& frame, DrawOrder order) {
-  if (std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.state == DrawState{} && !draw.program; }))
-    return {};
   Planner planner(trace, frame);
-  planner.run(order);
+  if (order == DrawOrder::by_depth) planner.note_requests();
+  if (std::ranges::any_of(frame.draws, [](const Draw& draw) { return draw.state != DrawState{} || draw.program; }))
+    planner.run(order);
   return std::move(planner.plan);
 }
 

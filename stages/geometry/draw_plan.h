@@ -9,8 +9,9 @@
 // out, or drawn in the nearest way, and noted.
 //
 // Left out: stencil tests other than `always`; blending that is neither alpha blending nor replacing; draws that write
-// no colour. Of the latter, those are not noted that change nothing: a depth pre-pass whose triangles a later draw with
-// depth function less_equal, equal or greater_equal draws again.
+// no colour. What shaders say of depth and coverage is noted, too. Of draws without colour, those are not noted that
+// change nothing: a depth pre-pass whose triangles a later draw with depth function less_equal, equal or greater_equal
+// draws again.
 #pragma once
 
 #include <vector>

@@ -58,7 +58,9 @@ class OrderedSamples {
   void test(std::uint32_t index, const RopRule& rule) {
     const SetupTriangle& triangle = triangles_.triangles[index];
     const Stencil& stencil = rule.stencil_of(triangle);
-    const bool is_cutout = shader_.is_cutout(index);
+    const bool has_verdicts = shader_.has_verdict(index), is_cutout = !has_verdicts && shader_.is_cutout(index);
+    const bool is_early = shader_.tests_early(index);
+    if (has_verdicts) find_verdicts(index);
     if (is_cutout) {
       if (!cutouts_) cutouts_.emplace(shader_, tile_, surface_.pattern.columns);
       cutouts_->start(index);
@@ -67,25 +69,54 @@ class OrderedSamples {
       covered += run.count;
       const std::size_t row = run.at / surface_.row_samples, first_cell = cell_of(run.at, surface_.row_samples);
       const std::uint32_t bit = 1u << row % kRowsPerCell;
-      const auto test_sample = [&](std::size_t i) {
-        if (!passes_tests(rule, stencil, span, i, run.at + i)) return;
+      const auto test_sample = [&](std::size_t i, const auto& is_there) {
+        if (!is_early && !is_there()) return;
+        double depth = 0;
+        depth_span_sample(span, static_cast<double>(i), 0.0, depth);
+        depth = std::clamp(depth, -1.0, 0.0);
+        if (has_verdicts) depth = verdicts_[first_cell + i].depth.value_or(depth);
+        if (!passes_tests(rule, stencil, depth, run.at + i) || (is_early && !is_there())) return;
         std::uint32_t& passed = passed_[first_cell + i];
         if (passed == 0) cells_.push_back(static_cast<std::uint32_t>(first_cell + i));
         passed |= bit;
         ++nearer;
       };
       if (is_cutout) {
-        for_each_sample(run, index, shader_, *cutouts_, [&](std::size_t i, const auto& is_there) {
-          if (is_there()) test_sample(i);
-        });
+        for_each_sample(run, index, shader_, *cutouts_, test_sample);
       } else {
-        for (std::size_t i = 0; i < run.count; ++i) test_sample(i);
+        for (std::size_t i = 0; i < run.count; ++i)
+          test_sample(i, [&] { return !has_verdicts || is_taken_[first_cell + i]; });
       }
     });
   }
 
-  // Of sample i of a run, which is number `at`. Changes its stencil value and its depth.
-  bool passes_tests(const RopRule& rule, const Stencil& stencil, const DepthSpan& span, std::size_t i, std::size_t at) {
+  // Sets verdicts_ and is_taken_ of the cells that the triangle covers in part.
+  void find_verdicts(std::uint32_t index) {
+    std::vector<std::uint32_t> cells;
+    verdicts_.resize(passed_.size());
+    is_taken_.resize(passed_.size());
+    places_.for_each_run(triangles_.triangles[index], [&](const SampleRun& run, const DepthSpan&) {
+      const std::size_t first = cell_of(run.at, surface_.row_samples);
+      for (std::size_t i = 0; i < run.count; ++i) cells.push_back(static_cast<std::uint32_t>(first + i));
+    });
+    std::ranges::sort(cells);
+    const auto repeated = std::ranges::unique(cells);
+    cells.erase(repeated.begin(), repeated.end());
+    invocations_.clear();
+    for (const std::uint32_t cell : cells) invocations_.push_back(invocation(index, cell));
+    const std::vector<FragmentVerdict> found = shader_.verdicts(index, invocations_);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const ShadingPlace& place = invocations_[k].place;
+      const auto columns = static_cast<std::uint32_t>(surface_.pattern.columns);
+      const std::uint32_t in_pixel =
+          cells[k] / static_cast<std::uint32_t>(surface_.row_samples) % columns * columns + cells[k] % columns;
+      verdicts_[cells[k]] = found[k];
+      is_taken_[cells[k]] = TakenPositions(found[k], place.x, place.y, columns * columns).takes(in_pixel);
+    }
+  }
+
+  // Of sample number `at`. Changes its stencil value and its depth.
+  bool passes_tests(const RopRule& rule, const Stencil& stencil, double depth, std::size_t at) {
     std::uint8_t& stored = surface_.stencil[at];
     const auto update = [&](StencilOperation operation) {
       if (rule.has_stencil)
@@ -95,9 +126,6 @@ class OrderedSamples {
       update(stencil.fail);
       return false;
     }
-    double depth = 0;
-    depth_span_sample(span, static_cast<double>(i), 0.0, depth);
-    depth = std::clamp(depth, -1.0, 0.0);
     if (!passes(rule.depth, depth, surface_.depth[at])) {
       update(stencil.depth_fail);
       return false;
@@ -210,8 +238,10 @@ class OrderedSamples {
   SpanPlaces places_;
   std::optional<CutoutCells> cutouts_;
   std::size_t next_clear_ = 0;
-  std::vector<std::uint32_t> passed_;  // of each cell: the rows whose samples passed
-  std::vector<std::uint32_t> cells_;   // of which some passed
+  std::vector<std::uint32_t> passed_;      // of each cell: the rows whose samples passed
+  std::vector<std::uint32_t> cells_;       // of which some passed
+  std::vector<FragmentVerdict> verdicts_;  // of cells
+  std::vector<bool> is_taken_;             // of cells: by their verdicts
   std::vector<Invocation> invocations_;
   std::vector<Wanted> wanted_;     // cell by cell
   std::vector<std::size_t> ends_;  // of each cell's part of it

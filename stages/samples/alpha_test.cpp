@@ -15,6 +15,20 @@ class AlphaTester {
   AlphaTester(const TileShader& shader, const AlphaTest& test, TexelRequests* texels)
       : shader_(shader), test_(test), samples_(test.sampling.pattern.count), texels_(texels) {}
 
+  // By a single invocation. Sets the fragment's depth.
+  void judge(SampleFragment& fragment, std::size_t i) const {
+    const CellGrid& grid = test_.sampling.grid;
+    const std::int32_t x = grid.pixel_x(fragment.x), y = grid.pixel_y(fragment.y);
+    const FragmentVerdict verdict =
+        shader_.verdict(fragment.triangle, static_cast<std::uint32_t>(test_.tile.index(x, y)), test_.places[i].x,
+                        test_.places[i].y, grid.shading_width(), false, texels_);
+    const TakenPositions taken(verdict, x, y, static_cast<std::uint32_t>(samples_ * grid.cells_per_pixel()));
+    const std::int32_t first = samples_ * grid.in_pixel(fragment.x, fragment.y);
+    for (std::int32_t s = 0; s < samples_; ++s)
+      if (!taken.takes(static_cast<std::uint32_t>(first + s))) fragment.mask &= ~(1u << s);
+    fragment.depth = verdict.depth;
+  }
+
   // The samples of fragment i that pass.
   std::uint32_t passed(const SampleFragment& fragment, std::size_t i) const {
     const CellGrid& grid = test_.sampling.grid;
@@ -71,13 +85,19 @@ void alpha_test(const TileShader& shader, const AlphaTest& test, StageCounters& 
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     SampleFragment& fragment = fragments[i];
     if (starts_quad(fragments, i)) end_request(texels), in_quad = 0;
-    if (!shader.is_cutout(fragment.triangle)) continue;
+    const bool has_verdict = shader.has_verdict(fragment.triangle);
+    if (!shader.is_cutout(fragment.triangle) && !has_verdict) continue;
+    if (shader.tests_early(fragment.triangle) != test.is_after_tests) continue;
     // Lanes of a quad run together: once, or for each sample that one of them has.
-    const std::uint32_t runs = test.coverage == AlphaCoverage::by_sample ? fragment.mask : 1u;
+    const std::uint32_t runs = test.coverage == AlphaCoverage::by_sample && !has_verdict ? fragment.mask : 1u;
     work.add(static_cast<std::uint64_t>(std::popcount(runs)),
              static_cast<std::uint64_t>(std::popcount(runs & ~in_quad)), shader.work(fragment.triangle).alpha);
     in_quad |= runs;
-    fragment.mask = tester.passed(fragment, i);
+    if (has_verdict) {
+      tester.judge(fragment, i);
+    } else {
+      fragment.mask = tester.passed(fragment, i);
+    }
     work.left += fragment.mask != 0;
   }
   end_request(texels);

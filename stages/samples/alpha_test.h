@@ -1,4 +1,7 @@
-// alpha_test: sample fragments -> sample fragments without cutouts.
+// alpha_test: sample fragments -> sample fragments without what their shaders take from them.
+//
+// These are cutouts and, in the API's order, all that shaders say of samples and depth (FragmentVerdict). Shaders that
+// ask for early tests come after those of depth and stencil.
 //
 // Sources: OpenGL 4.6 core specification, section 17.3.1 (alpha to coverage); stages/surface/hashed_alpha.h.
 #pragma once
@@ -24,6 +27,7 @@ struct AlphaTest {
   const Sampling& sampling;
   AlphaCoverage coverage;
   const std::vector<glm::vec2>& places;  // where each fragment is shaded, in its pixel
+  bool is_after_tests = false;           // of those whose shaders ask for early tests; else of all others
 };
 
 // Drops fragments of which nothing is left. Adds the texels that are read to `texels`, unless it is null: a request for

@@ -62,7 +62,7 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
   SampleCounts counts{fragments.list.size(), 0};
   accesses.clear();
   for (std::size_t i = 0; i < fragments.list.size(); ++i) {
-    const auto& [triangle, quad, x, y, mask] = fragments.list[i];
+    const auto& [triangle, quad, x, y, mask, own_depth] = fragments.list[i];
     const std::size_t pixel = in.tile.index(x, y);
     const CellPlane<float> plane = cell_plane(in.triangles.triangles[triangle].depth, double(x), double(y));
     float ignored;

@@ -80,7 +80,7 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
       float depth = 0;
       depth_test_scalar(plane, static_cast<float>(sampling.pattern.x[s]), static_cast<float>(sampling.pattern.y[s]),
                         0.0f, depth);
-      depth = std::clamp(depth, -1.0f, 0.0f);
+      depth = fragment.depth.value_or(std::clamp(depth, -1.0f, 0.0f));
       if (!passes(rule.depth, depth, surface.depth[at])) {
         ++count.depth_failed;
         update(stencil.depth_fail);

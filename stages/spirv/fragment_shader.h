@@ -28,7 +28,12 @@ namespace beampipe {
 // Throws ShaderError, one line.
 LaneProgram load_fragment_shader(std::span<const std::uint32_t> words, const Specialization& specialization = {});
 
-// Does the module, which may be broken, have an instruction that discards an invocation?
-bool may_discard(std::span<const std::uint32_t> words);
+// What a module, which may be broken, says to coverage and to tests, besides its colours.
+struct ShaderEffects {
+  bool discards = false;  // it has an instruction that discards an invocation
+  bool tests_early = false;
+  bool writes_depth = false, writes_samples = false;  // FragDepth, SampleMask
+};
+ShaderEffects effects_of(std::span<const std::uint32_t> words);
 
 }  // namespace beampipe

@@ -51,7 +51,12 @@ Barycentrics<float> into_triangle(const Barycentrics<float>& weights) {
 
 ProgramShader::ProgramShader(const SetupTriangles& triangles, const Trace& trace, const Frame& frame,
                              const ProgramSet* programs)
-    : triangles_(triangles), trace_(trace), frame_(frame), programs_(programs), draws_(frame.draws.size()) {
+    : triangles_(triangles),
+      trace_(trace),
+      frame_(frame),
+      programs_(programs),
+      target_samples_(frame.capture.pictures.color ? frame.capture.pictures.samples : 32),
+      draws_(frame.draws.size()) {
   std::vector<std::vector<std::uint32_t>> of_draw(frame.draws.size());
   for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i)
     if (triangles.surfaces[i].material == kProgramSurface) of_draw[triangles.draws[i]].push_back(i);
@@ -84,6 +89,7 @@ ProgramShader::BoundDraw ProgramShader::bind(const Draw& draw) const {
                    : row.built_in == spv::BuiltInHelperInvocation ? Kind::helper
                    : row.built_in == spv::BuiltInPrimitiveId      ? Kind::primitive
                    : row.built_in == spv::BuiltInPointCoord       ? Kind::half
+                   : row.built_in == spv::BuiltInSampleMask       ? Kind::all_bits
                                                                   : Kind::zero;
     } else {
       std::uint32_t first = 0;
@@ -100,8 +106,12 @@ ProgramShader::BoundDraw ProgramShader::bind(const Draw& draw) const {
     bound.inputs.push_back(input);
   }
   bound.outputs.fill(kNoRow);
-  for (const InterfaceRow& row : bound.program->outputs)
+  for (const InterfaceRow& row : bound.program->outputs) {
     if (row.location == 0 && row.index == 0 && row.component < 4) bound.outputs[row.component] = row.row;
+    // What has been tested early has its triangle's depth.
+    if (row.built_in == spv::BuiltInFragDepth && !bound.program->tests_early) bound.depth_output = row.row;
+    if (row.built_in == spv::BuiltInSampleMask && row.component == 0) bound.samples_output = row.row;
+  }
 
   for (const BufferSlot& slot : bound.program->buffers) {
     std::span<const std::byte> bytes;
@@ -184,6 +194,9 @@ void ProgramShader::set_inputs(const BoundDraw& draw, const ProgramPlace& place,
         case Kind::half:
           row.set(lane.number, 0.5f);
           break;
+        case Kind::all_bits:
+          row.bits[lane.number] = ~0u;
+          break;
         case Kind::zero:
           row.bits[lane.number] = 0;
           break;
@@ -227,7 +240,8 @@ std::vector<ProgramShader::Group> ProgramShader::grouped(const LaneProgram& prog
 }
 
 void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
-                        glm::vec4* colors, TexelRequests* texels, ShaderCounts& counts) const {
+                        glm::vec4* colors, TexelRequests* texels, FragmentVerdict* verdicts,
+                        ShaderCounts& counts) const {
   const bool has_helpers = draw.program->takes_differences;
   programs_->with_executor(draw.number, [&](ShaderExecutor& executor) {
     std::uint64_t active = 0, helpers = 0;
@@ -281,36 +295,46 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
       const bool is_there = kept >> lane & 1;
       const float alpha = draw.has_alpha ? channel(3, 1.0f) : 1.0f;
       colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : kDiscarded};
+      if (!verdicts) continue;
+      FragmentVerdict& verdict = verdicts[place_of[lane]];
+      if (draw.depth_output != kNoRow) verdict.depth = limited(executor.row(draw.depth_output).number(lane)) - 1;
+      if (draw.samples_output != kNoRow)
+        verdict.samples = FragmentVerdict::repeated(executor.row(draw.samples_output).bits[lane], target_samples_);
     }
   });
 }
 
 void ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
-                              TexelRequests* texels) const {
+                              TexelRequests* texels, FragmentVerdict* verdicts) const {
   const std::vector<Group> groups = grouped(*draw.program, places);
   constexpr std::size_t kMost = kShaderLanes / kGroup;
   ShaderCounts counts;  // what is charged comes from measured()
   for (std::size_t first = 0; first < groups.size(); first += kMost)
-    run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, texels, counts);
+    run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, texels,
+        verdicts, counts);
 }
 
-void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels) const {
+void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels,
+                          FragmentVerdict* verdicts) const {
   if (places.empty()) return;
   const BoundDraw& draw = draws_[triangles_.draws[places[0].triangle]];
-  shade_all(draw, places, colors, texels);
+  shade_all(draw, places, colors, texels, verdicts);
   if (draw.mode != AlphaMode::mask) return;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].is_there || colors[i].a != kDiscarded) continue;
     std::array<ProgramPlace, 4> around;
     std::array<glm::vec4, 4> found;
+    std::array<FragmentVerdict, 4> found_verdicts;
     for (std::size_t k = 0; k < around.size(); ++k) {
       around[k] = places[i];
       around[k].u = std::clamp(places[i].u + (k % 2 == 0 ? -0.25f : 0.25f), 0.0f, 1.0f);
       around[k].v = std::clamp(places[i].v + (k < 2 ? -0.25f : 0.25f), 0.0f, 1.0f);
     }
-    shade_all(draw, around, found.data(), nullptr);
+    shade_all(draw, around, found.data(), nullptr, found_verdicts.data());
     const auto kept = std::ranges::find_if(found, [](const glm::vec4& color) { return color.a != kDiscarded; });
-    if (kept != found.end()) colors[i] = *kept;
+    if (kept == found.end()) continue;
+    colors[i] = *kept;
+    if (verdicts) verdicts[i] = found_verdicts[static_cast<std::size_t>(kept - found.begin())];
   }
 }
 
@@ -335,7 +359,7 @@ ProgramShader::Cost ProgramShader::measured(std::uint32_t draw, std::span<const 
   const BoundDraw& bound = draws_[draw];
   std::array<glm::vec4, kMost> colors;
   ShaderCounts counts;
-  run(bound, places, grouped(*bound.program, places), colors.data(), nullptr, counts);
+  run(bound, places, grouped(*bound.program, places), colors.data(), nullptr, nullptr, counts);
   const auto mean = [&](std::uint64_t sum) { return (sum + counts.invocations / 2) / counts.invocations; };
   Cost cost;
   cost.ops = {mean(counts.ops.mul_add), mean(counts.ops.add),     mean(counts.ops.bit), mean(counts.ops.fetch),

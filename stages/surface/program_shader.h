@@ -8,8 +8,9 @@
 // part of it a colour stands for. Only where cells of a pixel are shaded, by the reference and by multisampling above
 // 16 samples, it is a cell: as in a picture of that resolution.
 //
-// Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point, and
-// all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1.
+// Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point,
+// SampleMask has all bits, and all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1; and
+// FragDepth and SampleMask.
 #pragma once
 
 #include <array>
@@ -20,6 +21,7 @@
 
 #include "stages/cost/counters.h"
 #include "stages/data/setup_triangle.h"
+#include "stages/surface/fragment_verdict.h"
 #include "stages/surface/program_images.h"
 #include "stages/surface/program_set.h"
 #include "traces/trace.h"
@@ -50,8 +52,16 @@ class ProgramShader {
   // Sets the colour of each place. Alpha is that of the shader in the API's order and where the draw is blended, and
   // else 1; it is kDiscarded where the shader discards. A place that is_there then has the colour of one that is not
   // discarded, a quarter of a pixel away, if there is one. The places lie in triangles of one draw. Adds the texels
-  // that their invocations read, without helpers, to `texels`, whose open request ends.
-  void shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels = nullptr) const;
+  // that their invocations read, without helpers, to `texels`, whose open request ends. `verdicts`: null, or one for
+  // each place, of which the depth and the sample mask are set.
+  void shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels = nullptr,
+             FragmentVerdict* verdicts = nullptr) const;
+
+  // Does it say of fragments where they are, in depth or in samples? Are they tested before it runs?
+  bool has_verdicts(std::uint32_t draw) const {
+    return draws_[draw].depth_output != kNoRow || draws_[draw].samples_output != kNoRow;
+  }
+  bool tests_early(std::uint32_t draw) const { return draws_[draw].program->tests_early; }
 
   // What an invocation costs, helpers of its own left out: the mean over places in up to 16 of the draw's triangles,
   // which is exact where control flow is the same everywhere. `helpers`: how many it needs.
@@ -66,7 +76,7 @@ class ProgramShader {
 
  private:
   struct Input {
-    enum class Kind { varying, frag_coord, front_facing, helper, primitive, half, zero };
+    enum class Kind { varying, frag_coord, front_facing, helper, primitive, half, all_bits, zero };
     std::uint32_t row = 0;
     Kind kind = Kind::zero;
     std::uint32_t number = 0;  // of the varying in its vertex, or the component
@@ -81,6 +91,7 @@ class ProgramShader {
     std::size_t stride = 0;  // varyings of a vertex
     std::vector<Input> inputs;
     std::array<std::uint32_t, 4> outputs{};
+    std::uint32_t depth_output = kNoRow, samples_output = kNoRow;
     ShaderResources resources{};
     BoundImages images{};
     glm::dvec4 to_w{};  // clip w of a position
@@ -100,16 +111,17 @@ class ProgramShader {
   static std::vector<Group> grouped(const LaneProgram& program, std::span<const ProgramPlace> places);
   void set_inputs(const BoundDraw& draw, const ProgramPlace& place, std::span<const Lane> lanes, std::uint64_t helpers,
                   ShaderExecutor& executor) const;
-  void shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
-                 TexelRequests* texels) const;
+  void shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels,
+                 FragmentVerdict* verdicts) const;
   void run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
-           glm::vec4* colors, TexelRequests* texels, ShaderCounts& counts) const;
+           glm::vec4* colors, TexelRequests* texels, FragmentVerdict* verdicts, ShaderCounts& counts) const;
   Cost measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const;
 
   const SetupTriangles& triangles_;
   const Trace& trace_;
   const Frame& frame_;
   const ProgramSet* programs_;
+  std::uint32_t target_samples_;  // that sample masks have bits for
   std::vector<BoundDraw> draws_;
 };
 

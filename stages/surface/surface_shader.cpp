@@ -466,6 +466,30 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, co
       });
 }
 
+std::vector<FragmentVerdict> SurfaceShader::verdicts(std::uint32_t triangle, const std::vector<Invocation>& invocations,
+                                                     bool place_is_there, TexelRequests* texels) const {
+  std::vector<FragmentVerdict> found(invocations.size());
+  std::vector<glm::vec4> colors;
+  if (is_program(triangle)) {
+    std::vector<ProgramPlace> places;
+    for (const Invocation& invocation : invocations) {
+      places.push_back(program_place(invocation, false));
+      places.back().is_there = place_is_there;
+    }
+    colors.resize(places.size());
+    programs_.shade(places, colors.data(), texels, found.data());
+  } else {
+    for (const Invocation& invocation : invocations)
+      colors.push_back(shaded(triangle, invocation.place, invocation.footprint, texels));
+  }
+  const float least = is_program(triangle) || !is_cutout(triangle) ? 0 : alpha_cutoff(triangle);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    found[i].is_kept = colors[i].a >= least;
+    if (has_alpha_to_coverage(triangle)) found[i].coverage = limited_alpha(colors[i].a);
+  }
+  return found;
+}
+
 SurfaceShader::AlphaPlace SurfaceShader::alpha_place(std::uint32_t triangle, const ShadingPlace& place,
                                                      const Footprint& footprint) const {
   AlphaPlace found;

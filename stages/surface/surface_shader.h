@@ -16,6 +16,7 @@
 #include "stages/data/accumulator.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
+#include "stages/surface/fragment_verdict.h"
 #include "stages/surface/opacity.h"
 #include "stages/surface/program_shader.h"
 #include "stages/surface/surface_formulas.h"
@@ -180,9 +181,21 @@ class SurfaceShader {
     return !is_opaque(triangle) && alpha_mode(triangle) == AlphaMode::mask;
   }
   bool is_translucent(std::uint32_t triangle) const { return !is_opaque(triangle) && !is_cutout(triangle); }
-  // Does its alpha take positions away? In the API's order, what is translucent is blended instead.
+  // Does its shader take positions away? In the API's order, what is translucent is blended instead.
   bool is_masked(std::uint32_t triangle) const {
-    return triangles_.order == DrawOrder::of_api ? is_cutout(triangle) : !is_opaque(triangle);
+    return triangles_.order == DrawOrder::of_api ? is_cutout(triangle) || has_verdict(triangle) : !is_opaque(triangle);
+  }
+
+  // Does its shader say more of a fragment, in the API's order, than its colour and whether it is discarded?
+  bool has_verdict(std::uint32_t triangle) const {
+    return has_alpha_to_coverage(triangle) || (is_program_in_order(triangle) && programs_.has_verdicts(draw(triangle)));
+  }
+  // What it says. `place_is_there`: who asks knows that the surface is there, or near it in the pixel.
+  std::vector<FragmentVerdict> verdicts(std::uint32_t triangle, const std::vector<Invocation>& invocations,
+                                        bool place_is_there, TexelRequests* texels = nullptr) const;
+  // Are its fragments tested before they are shaded, whatever the shader says of them then?
+  bool tests_early(std::uint32_t triangle) const {
+    return is_program_in_order(triangle) && programs_.tests_early(draw(triangle));
   }
   float alpha_cutoff(std::uint32_t triangle) const {
     return is_program(triangle) ? Material{}.alpha_cutoff : material(triangle).alpha_cutoff;
@@ -227,6 +240,16 @@ class SurfaceShader {
 
   glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                    TexelRequests* texels) const;
+
+  std::uint32_t draw(std::uint32_t triangle) const { return triangles_.draws[triangle]; }
+  // Where shaders say that there is a surface everywhere, nobody asks them.
+  bool is_program_in_order(std::uint32_t triangle) const {
+    return triangles_.order == DrawOrder::of_api && !is_opaque(triangle) && is_program(triangle);
+  }
+  bool has_alpha_to_coverage(std::uint32_t triangle) const {
+    return triangles_.order == DrawOrder::of_api && !is_opaque(triangle) &&
+           frame_.draws[draw(triangle)].state.alpha_to_coverage;
+  }
 
   AlphaMode alpha_mode(std::uint32_t triangle) const {
     return is_program(triangle) ? programs_.alpha_mode(triangles_.draws[triangle]) : material(triangle).alpha_mode;
@@ -348,6 +371,15 @@ class TileShader {
   float light_range(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
                     TexelRequests* texels = nullptr) const {
     return shader_->light_range(triangle, place(pixel, u, v), footprint, texels);
+  }
+  bool has_verdict(std::uint32_t triangle) const { return shader_ && shader_->has_verdict(triangle); }
+  bool tests_early(std::uint32_t triangle) const { return shader_ && shader_->tests_early(triangle); }
+  FragmentVerdict verdict(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
+                          bool place_is_there, TexelRequests* texels) const {
+    return shader_->verdicts(triangle, {{triangle, place(pixel, u, v), footprint}}, place_is_there, texels)[0];
+  }
+  std::vector<FragmentVerdict> verdicts(std::uint32_t triangle, const std::vector<Invocation>& invocations) const {
+    return shader_->verdicts(triangle, invocations, false);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
   bool is_masked(std::uint32_t triangle) const { return shader_ && shader_->is_masked(triangle); }

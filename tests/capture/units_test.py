@@ -268,7 +268,8 @@ class Windows(unittest.TestCase):
 class States(unittest.TestCase):
     API = {"viewport": [0, 32, 64, -32], "depth_range": [0, 1], "scissor": None, "depth_test": True, "depth_write": True,
            "depth_function": "Less", "bias": 0, "slope_bias": 0, "bias_clamp": 0, "depth_format": "D24",
-           "depth_clamp": False, "cull": "NoCull", "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None}
+           "depth_clamp": False, "cull": "NoCull", "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None,
+           "alpha_to_coverage": False}
 
     def of(self, **changes):
         return state.state_of({**self.API, **changes}, 64, 32)
@@ -305,6 +306,7 @@ class States(unittest.TestCase):
     def test_masks_and_faces(self):
         self.assertEqual(self.of(color_mask=7, front_ccw=False), {"color_mask": "rgb", "front_face": "clockwise"})
         self.assertEqual(state.state_of(self.API, 64, 32, has_alpha=False), {"color_mask": "rgb"})
+        self.assertEqual(self.of(alpha_to_coverage=True), {"alpha_to_coverage": True})
 
     def test_stencil_has_8_bits(self):
         face = {"function": "Equal", "reference": 1, "compare_mask": 0xFFFFFFFF, "write_mask": 0xFFFFFFFF,

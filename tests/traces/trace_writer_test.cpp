@@ -193,6 +193,7 @@ DrawState random_state(std::mt19937& random) {
   if (state.blend && chance()) state.blend->alpha = equation();
   if (state.blend && chance()) state.blend->constant = {0.5f, 0, 1, std::abs(number())};
   if (chance()) state.color_mask = below(16);
+  state.alpha_to_coverage = chance();
   for (std::optional<Stencil>* const face : {&state.stencil, &state.stencil_back})
     if (chance()) *face = {compare(), below(256), below(256), below(256), operation(), operation(), operation()};
   if (chance()) state.stencil_cleared_to = below(256);

@@ -30,6 +30,8 @@ def read_state(controller, depth_format):
         "line_width": raster.lineWidth, "line_mode": raster.lineRasterMode.name,
         "has_stipple": raster.lineStippleFactor > 0 and raster.lineStipplePattern != 0xFFFF,
         "front_ccw": raster.frontCCW, "cull": raster.cullMode.name, "fill": raster.fillMode.name,
+        # OpenGL has it without multisampling, too, where it does nothing.
+        "alpha_to_coverage": vulkan.colorBlend.alphaToCoverageEnable and vulkan.multisample.rasterSamples > 1,
         "color_mask": blend.writeMask if blend else 0,
         "blend": {"color": _equation(blend.colorBlend), "alpha": _equation(blend.alphaBlend),
                   "constant": list(vulkan.colorBlend.blendFactor)} if blend and blend.enabled else None,

@@ -96,6 +96,8 @@ def state_of(api, width, height, has_alpha=True):
     mask = "".join(channel for bit, channel in enumerate(channels) if api["color_mask"] >> bit & 1)
     if mask != "rgba":
         state["color_mask"] = mask
+    if api["alpha_to_coverage"]:
+        state["alpha_to_coverage"] = True
     if api["stencil"]:  # what is culled does not matter
         front, back = (stencil_of(face) for face in api["stencil"])
         state["stencil"] = back if api["cull"] == "Front" else front

@@ -100,6 +100,7 @@ std::vector<std::pair<std::string, std::size_t>> state_of(const Frame& frame) {
   count("depth clear", [&](const DrawState& state) { return state.depth.cleared_before; });
   count("blend", [&](const DrawState& state) { return state.blend.has_value(); });
   count("colour mask", [&](const DrawState& state) { return state.color_mask != defaults.color_mask; });
+  count("alpha to coverage", [&](const DrawState& state) { return state.alpha_to_coverage; });
   count("stencil", [&](const DrawState& state) { return state.stencil.has_value(); });
   return items;
 }

@@ -31,8 +31,10 @@ std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t
       if (!program)
         note("in one grey, as shader " + in_quotes(trace.programs[number].name) +
              " cannot run: " + programs.error(number));
-      else if (std::ranges::any_of(program->outputs, [](const InterfaceRow& row) { return row.location == kNoRow; }))
-        note("shaders set depth or coverage, which stay those of the triangle");
+      else if (std::ranges::any_of(program->outputs, [](const InterfaceRow& row) {
+                 return row.built_in == spv::BuiltInFragStencilRefEXT;
+               }))
+        note("shaders set the stencil test's reference, which stays that of the draw");
     }
   }
   return notes;

@@ -107,6 +107,7 @@ std::string digest_of(const Trace& trace) {
       digest.add_all(state.color_mask, state.stencil);
       digest.add_all(depth.test, depth.write, depth.function, depth.near, depth.far, depth.bias, depth.clip,
                      depth.cleared_before);
+      if (state.alpha_to_coverage) digest.add(state.alpha_to_coverage);
       if (draw.program) add(*draw.program, digest);
     }
   }

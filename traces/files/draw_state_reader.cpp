@@ -147,6 +147,8 @@ Form<DrawState> make_form() {
                 "How colours are blended with what is stored. Without it, the material decides.")
       .optional("color_mask", &DrawState::color_mask, mask,
                 "The channels that are written: letters of \"rgba\", which is the default.")
+      .optional("alpha_to_coverage", &DrawState::alpha_to_coverage, form::boolean(),
+                "Whether alpha is the part of a pixel's samples that a fragment takes.")
       .optional("stencil", &DrawState::stencil, stencil_form(), "The stencil test. Without it, there is none.")
       .optional("stencil_back", &DrawState::stencil_back, stencil_form(),
                 "That of back faces, where it is not that of front faces.")

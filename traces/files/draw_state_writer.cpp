@@ -80,6 +80,7 @@ void write_draw_state(TraceText& text, const DrawState& state) {
   text.put_choice("front_face", state.front_is_clockwise, defaults.front_is_clockwise, kFrontFaceNames);
   if (state.blend) write_blend(text, *state.blend);
   if (state.color_mask != defaults.color_mask) write_color_mask(text, state.color_mask);
+  text.put_member("alpha_to_coverage", state.alpha_to_coverage, defaults.alpha_to_coverage);
   if (state.stencil) write_stencil(text, "stencil", *state.stencil);
   if (state.stencil_back) write_stencil(text, "stencil_back", *state.stencil_back);
   if (state.stencil_cleared_to) {
