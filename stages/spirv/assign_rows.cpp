@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <queue>
+#include <unordered_set>
 #include <utility>
 
 namespace beampipe {
@@ -138,9 +139,12 @@ Row order_copies(Draft& draft) {
   const auto first = static_cast<Row>(draft.rows.size());
   for (DraftBlock& block : draft.blocks)
     for (DraftEdge& edge : block.edges) {
+      std::unordered_set<Row> written;
       bool clash = false;
-      for (std::size_t i = 0; i < edge.copies.size() && !clash; ++i)
-        for (std::size_t j = i + 1; j < edge.copies.size(); ++j) clash |= edge.copies[i].first == edge.copies[j].second;
+      for (const auto& [to, from] : edge.copies) {
+        clash |= written.contains(from);
+        written.insert(to);
+      }
       if (!clash) continue;
       std::vector<std::pair<Row, Row>> through;
       for (auto& [to, from] : edge.copies) {

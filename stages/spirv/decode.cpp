@@ -28,13 +28,14 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
     return found->second;
   };
   std::size_t first = 0, phis = 0;
+  bool ends_invocation = false;
   const auto is_line = [](spv::Op op) { return op == spv::OpLine || op == spv::OpNoLine; };
   for (std::size_t i = 0; i < body.size(); ++i) {
     const Instruction& instruction = body[i];
     const std::span<const std::uint32_t> operands = instruction.operands;
     if (instruction.op == spv::OpLabel) {
       blocks.push_back({.label = instruction.result});
-      first = i + 1, phis = 0;
+      first = i + 1, phis = 0, ends_invocation = false;
       continue;
     }
     if (blocks.empty()) continue;  // OpFunction
@@ -56,6 +57,9 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
       case spv::OpSwitch:
         for (std::size_t j = 1; j < operands.size(); j += 2) block.edges.successors.push_back(number_of(operands[j]));
         break;
+      case spv::OpFunctionCall:
+        ends_invocation |= module_.ends_invocation(operands[0]);
+        continue;
       case spv::OpReturn:
       case spv::OpKill:
       case spv::OpTerminateInvocation:
@@ -68,6 +72,7 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
     block.phis = body.subspan(first, phis);
     block.others = body.subspan(first + phis, i - first - phis);
     block.end = instruction;
+    if (ends_invocation) block.end = {.op = spv::OpKill}, block.edges.successors.clear();
   }
   for (const Block& block : blocks)
     if (block.end.op == spv::OpNop) throw ShaderError("a block ends in a way that is not supported");
@@ -75,6 +80,7 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
 }
 
 void Decoder::decode_instruction(const Instruction& instruction) {
+  if (instruction.type != 0) require_room(instruction.type);
   switch (instruction.op) {
     case spv::OpNop:
     case spv::OpLine:
@@ -101,6 +107,9 @@ void Decoder::decode_instruction(const Instruction& instruction) {
       return store(pointer(instruction.operands[0]), Parts(parts(instruction.operands[1])));
     case spv::OpCopyMemory:
       return store(pointer(instruction.operands[0]), load(pointer(instruction.operands[1])));
+    case spv::OpFunctionCall:
+      if (module_.ends_invocation(instruction.operands[0])) return;  // at the end of the block
+      throw ShaderError("SPIRV-Tools cannot inline a function of the shader");
     case spv::OpDemoteToHelperInvocation:
       draft_.program.discards = true;
       return add({.code = LaneCode::discard});
@@ -172,6 +181,7 @@ Draft Decoder::decode() {
     for (const Instruction& phi : blocks[number].phis) {
       if (phi.op != spv::OpPhi) continue;
       Parts rows;
+      require_room(phi.type);
       const std::uint32_t count = parts_of(phi.type);
       for (std::uint32_t i = 0; i < count; ++i) rows.push_back(draft_.add_row(DraftRow::Kind::value));
       define(phi, std::move(rows));
@@ -197,7 +207,10 @@ Draft Decoder::decode() {
         const Parts from = parts(phi.operands[j]);
         for (DraftEdge& edge : block_->edges)
           if (edge.target == i)
-            for (std::size_t k = 0; k < to.size(); ++k) edge.copies.emplace_back(to[k], from[k]);
+            for (std::size_t k = 0; k < to.size(); ++k) {
+              count_op();
+              edge.copies.emplace_back(to[k], from[k]);
+            }
       }
     }
   }

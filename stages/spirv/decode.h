@@ -7,8 +7,9 @@
 namespace beampipe {
 
 // Limits on what a program may have.
-inline constexpr std::size_t kMostLaneOps = std::size_t{1} << 18;
-inline constexpr std::uint32_t kMostMemoryRows = 4096;  // of outputs and local variables, and of inputs
+inline constexpr std::size_t kMostLaneOps = std::size_t{1} << 18;  // and copies that phis take
+inline constexpr std::uint32_t kMostMemoryRows = 4096;             // of outputs and local variables, and of inputs
+inline constexpr std::size_t kMostParts = std::size_t{1} << 22;    // of all values
 
 // Throws ShaderError, which names an opcode that is not supported.
 Draft decode(const ShaderModule& module);

@@ -31,9 +31,13 @@ Row Decoder::emit(const LaneOp& op) {
 }
 
 void Decoder::add(const LaneOp& op) {
+  count_op();
+  block_->ops.push_back(op);
+}
+
+void Decoder::count_op() {
   if (++ops_ > kMostLaneOps)
     throw ShaderError("the shader has more than " + std::to_string(kMostLaneOps) + " lane operations");
-  block_->ops.push_back(op);
 }
 
 void Decoder::emit_copy(Row to, Row from) { add({.code = LaneCode::copy, .keeps = true, .result = to, .a = from}); }
@@ -130,6 +134,13 @@ std::uint32_t Decoder::parts_of(std::uint32_t type) const {
   return count;
 }
 
+void Decoder::require_room(std::uint32_t type) {
+  const std::uint32_t count = module_.type(type).parts;
+  if (count > 0) all_parts_ += parts_of(type);  // pointers and images have none
+  if (all_parts_ > kMostParts)
+    throw ShaderError("the shader's values have more than " + std::to_string(kMostParts) + " parts");
+}
+
 Parts Decoder::zeros(std::uint32_t type) { return Parts(std::vector<Row>(parts_of(type), constant(0))); }
 
 const Parts& Decoder::parts(std::uint32_t id) {
@@ -140,6 +151,7 @@ const Parts& Decoder::parts(std::uint32_t id) {
 }
 
 void Decoder::define_constant(const Instruction& instruction) {
+  if (instruction.type != 0) require_room(instruction.type);
   switch (instruction.op) {
     case spv::OpConstantTrue:
       return define(instruction, {constant(~0u)});

@@ -98,6 +98,7 @@ class Decoder {
     return emit({.code = code, .is_free = true, .a = a, .b = b});
   }
   void add(const LaneOp& op);        // of any other
+  void count_op();                   // throws if there are too many
   void emit_copy(Row to, Row from);  // in lanes that run
   const ShaderType& scalar_of(
       std::uint32_t type) const;  // of a scalar, vector or matrix; throws if it is not supported
@@ -108,6 +109,7 @@ class Decoder {
   Row half_bits(Row row);                      // of a 16-bit float, and back
   Row half_value(Row row);
   std::uint32_t parts_of(std::uint32_t type) const;  // throws if there are too many
+  void require_room(std::uint32_t type);             // for one more value, before it is made; throws if there is none
   Parts zeros(std::uint32_t type);
   const Parts& parts(std::uint32_t id);
   Row part(std::uint32_t id, std::size_t i = 0) { return parts(id)[i]; }
@@ -163,7 +165,8 @@ class Decoder {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> buffers_;  // by variable and element
   std::unordered_map<std::uint32_t, std::uint32_t> slots_;                    // image and sampler variables
   DraftBlock* block_ = nullptr;                                               // that is being decoded
-  std::size_t ops_ = 0;                                                       // in all blocks
+  std::size_t ops_ = 0;                                                       // in all blocks, and copies
+  std::size_t all_parts_ = 0;                                                 // of values
 };
 
 }  // namespace beampipe

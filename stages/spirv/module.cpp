@@ -7,8 +7,8 @@
 #include <memory>
 #include <string_view>
 
+#include "stages/spirv/module_limits.h"
 #include "stages/spirv/shader_error.h"
-#include "stages/spirv/simplify.h"
 
 namespace beampipe {
 namespace {
@@ -34,6 +34,7 @@ void ShaderModule::read_instructions() {
   struct Reader {
     ShaderModule& module;
     std::uint32_t function = 0;  // id
+    std::uint32_t blocks = 0;    // of it, so far
   } reader{*this};
   const auto read = [](void* data, const spv_parsed_instruction_t* parsed) {
     Reader& to = *static_cast<Reader*>(data);
@@ -42,7 +43,7 @@ void ShaderModule::read_instructions() {
     Instruction instruction{static_cast<spv::Op>(parsed->opcode), parsed->type_id, parsed->result_id, {}};
     const std::size_t skipped = 1u + (parsed->type_id != 0) + (parsed->result_id != 0);
     instruction.operands = std::span(parsed->words + skipped, parsed->num_words - skipped);
-    if (instruction.op == spv::OpFunction) to.function = instruction.result;
+    if (instruction.op == spv::OpFunction) to.function = instruction.result, to.blocks = 0;
     if (to.function == 0)
       module.globals_.push_back(instruction);
     else if (to.function == module.entry_)
@@ -52,6 +53,13 @@ void ShaderModule::read_instructions() {
 
     const std::span<const std::uint32_t> operands = instruction.operands;
     switch (instruction.op) {
+      case spv::OpLabel:
+        ++to.blocks;
+        break;
+      case spv::OpKill:
+      case spv::OpTerminateInvocation:
+        if (to.blocks == 1) module.ending_.insert(to.function);
+        break;
       case spv::OpEntryPoint:
         module.entry_ = operands[1];
         break;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <spirv/unified1/spirv.hpp>
 #include <string>
@@ -71,6 +72,7 @@ class ShaderModule {
                                           std::uint32_t member = kWhole) const;
 
   bool has_mode(spv::ExecutionMode mode) const;
+  bool ends_invocation(std::uint32_t function) const { return ending_.contains(function); }  // does each call of it?
   std::uint32_t constant_word(std::uint32_t id) const;  // of an integer constant; throws ShaderError
 
  private:
@@ -82,6 +84,7 @@ class ShaderModule {
   std::vector<ShaderType> types_;
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> decorations_;
   std::vector<spv::ExecutionMode> modes_;
+  std::set<std::uint32_t> ending_;  // functions
   std::uint32_t glsl_ = 0, entry_ = 0;
 };
 

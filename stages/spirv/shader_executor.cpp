@@ -29,8 +29,10 @@ constexpr std::uint32_t kNoBlock = ~0u;
 // One run of a program.
 class ProgramRun {
  public:
-  ProgramRun(const LaneProgram& program, const ShaderResources& resources, LaneRow* rows, std::size_t lanes)
+  ProgramRun(const LaneProgram& program, const ShaderResources& resources, LaneRow* rows, std::size_t lanes,
+             std::uint32_t most_steps)
       : program_(program),
+        most_steps_(most_steps),
         state_{rows, lanes, &program, &resources},
         active_(rows[kActiveRow]),
         aside_(rows[program.rows + kAsideRow]),
@@ -40,11 +42,10 @@ class ProgramRun {
     spent_.bits.fill(0);
   }
 
-  // False if lanes were stopped.
-  bool run(const std::uint32_t* instructions, ShaderCounts& counts) {
+  void run(const std::uint32_t* instructions, ShaderCounts& counts) {
     while (true) {
       const std::uint32_t number = least_wanted();
-      if (number == kNoBlock) return !was_stopped_;
+      if (number == kNoBlock) break;
       const LaneBlock& block = program_.blocks[number];
       const std::uint64_t running = activate(number);
       if (running == 0) continue;  // all have been stopped
@@ -55,6 +56,7 @@ class ProgramRun {
       run_ops(block);
       leave(block);
     }
+    counts.stopped += stopped_;
   }
 
  private:
@@ -74,19 +76,19 @@ class ProgramRun {
       spent_.bits[i] += active_.bits[i] & steps;
       most = spent_.bits[i] > most ? spent_.bits[i] : most;
     }
-    return most > ShaderExecutor::kMostSteps ? running - stop() : running;
+    return most > most_steps_ ? running - stop() : running;
   }
 
   // Returns how many of the active lanes stop.
   std::uint32_t stop() {
     std::uint32_t stopped = 0;
     for (std::size_t i = 0; i < state_.lanes; ++i) {
-      if (active_.bits[i] == 0 || spent_.bits[i] <= ShaderExecutor::kMostSteps) continue;
+      if (active_.bits[i] == 0 || spent_.bits[i] <= most_steps_) continue;
       active_.bits[i] = 0, wanted_.bits[i] = kNoBlock;
       state_.rows[kHelperRow].bits[i] = ~0u;
-      was_stopped_ = true;
       ++stopped;
     }
+    stopped_ += stopped;
     return stopped;
   }
 
@@ -143,14 +145,15 @@ class ProgramRun {
   }
 
   const LaneProgram& program_;
+  std::uint32_t most_steps_;
   LaneState state_;
   LaneRow &active_, &aside_, &takes_, &spent_, &wanted_;
-  bool was_stopped_ = false;
+  std::uint32_t stopped_ = 0;
 };
 
-bool run_program_kernel(const LaneProgram& program, const ShaderResources& resources, LaneRow* rows, std::size_t lanes,
-                        const std::uint32_t* instructions, ShaderCounts& counts) {
-  return ProgramRun(program, resources, rows, lanes).run(instructions, counts);
+void run_program_kernel(const LaneProgram& program, const ShaderResources& resources, LaneRow* rows, std::size_t lanes,
+                        const std::uint32_t* instructions, std::uint32_t most_steps, ShaderCounts& counts) {
+  ProgramRun(program, resources, rows, lanes, most_steps).run(instructions, counts);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -174,8 +177,8 @@ ShaderExecutor::ShaderExecutor(const LaneProgram& program)
   }
 }
 
-bool ShaderExecutor::run(const ShaderResources& resources, std::size_t count, std::uint64_t active,
-                         std::uint64_t helpers, ShaderCounts& counts) {
+void ShaderExecutor::run(const ShaderResources& resources, std::size_t count, std::uint64_t active,
+                         std::uint64_t helpers, ShaderCounts& counts, std::uint32_t most_steps) {
   constexpr std::size_t kGroup = 16;
   const std::size_t lanes = std::min((count + kGroup - 1) / kGroup * kGroup, kShaderLanes);
   LaneRow &wanted = rows_[program_.rows + HWY_NAMESPACE::kWantedRow], &helper_row = rows_[kHelperRow];
@@ -186,8 +189,8 @@ bool ShaderExecutor::run(const ShaderResources& resources, std::size_t count, st
     counts.invocations += runs;
   }
   for (std::uint32_t i = 0; i < program_.memory_rows; ++i) rows_[program_.first_memory + i].bits.fill(0);
-  return HWY_DYNAMIC_DISPATCH(run_program_kernel)(program_, resources, rows_.data(), lanes, instructions_.data(),
-                                                  counts);
+  HWY_DYNAMIC_DISPATCH(run_program_kernel)
+  (program_, resources, rows_.data(), lanes, instructions_.data(), most_steps, counts);
 }
 
 std::uint64_t ShaderExecutor::kept() const {

@@ -33,13 +33,14 @@ struct ShaderCounts {
   std::uint64_t instructions = 0;      // lane operations that are counted in ops, and image operations
   std::uint64_t texture_requests = 0;  // samples, gathers and fetches
   std::uint64_t lanes_issued = 0;      // of instructions: those of lanes that wait included
+  std::uint64_t stopped = 0;           // invocations that took too many steps
 };
 
 class ShaderExecutor {
  public:
   // A lane is stopped after about so many lane operations, ways out of blocks and values that phis take; an image that
-  // is read counts as many.
-  static constexpr std::uint32_t kMostSteps = 1u << 20;
+  // is read counts as many. Captured programs' shaders take a few thousand.
+  static constexpr std::uint32_t kMostSteps = 1u << 16;
 
   // The program must outlive it.
   explicit ShaderExecutor(const LaneProgram& program);
@@ -50,11 +51,11 @@ class ShaderExecutor {
   const LaneRow& row(std::uint32_t number) const { return rows_[number]; }
 
   // Lanes [0, count) for which bits of `active` are set; those of `helpers` are helper invocations. Adds to `counts`,
-  // helpers included. False if lanes were stopped at kMostSteps; they count as discarded.
-  bool run(const ShaderResources& resources, std::size_t count, std::uint64_t active, std::uint64_t helpers,
-           ShaderCounts& counts);
+  // helpers included. Lanes that take more than `most_steps` are stopped.
+  void run(const ShaderResources& resources, std::size_t count, std::uint64_t active, std::uint64_t helpers,
+           ShaderCounts& counts, std::uint32_t most_steps = kMostSteps);
 
-  // Lanes of the last run that have results: neither helpers nor discarded.
+  // Lanes of the last run that have results: neither helpers nor discarded nor stopped.
   std::uint64_t kept() const;
 
  private:

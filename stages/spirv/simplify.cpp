@@ -1,12 +1,13 @@
 #include "stages/spirv/simplify.h"
 
-#include <algorithm>
-#include <functional>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp>
 #include <string>
+#include <utility>
 
+#include "stages/spirv/module_limits.h"
+#include "stages/spirv/module_words.h"
 #include "stages/spirv/shader_error.h"
 
 namespace beampipe {
@@ -37,66 +38,54 @@ void validate(std::span<const std::uint32_t> words) {
   spvtools::ValidatorOptions options;
   options.SetSkipBlockLayout(true);  // Mesa's zink lays push constants out in its own way
   options.SetUniversalLimit(spv_validator_limit_max_id_bound, ModuleLimits::kIds);
-  options.SetUniversalLimit(spv_validator_limit_max_control_flow_nesting_depth, 256);
+  options.SetUniversalLimit(spv_validator_limit_max_control_flow_nesting_depth, ModuleLimits::kNesting);
   options.SetUniversalLimit(spv_validator_limit_max_struct_depth, 32);
   if (!tools.Validate(words.data(), words.size(), options)) throw ShaderError("invalid SPIR-V: " + message.text());
 }
 
-// Functions may call each other so that inlining doubles the module with each of them.
-class InlinedWords {
- public:
-  // Of a valid module, in which no function calls itself.
-  explicit InlinedWords(std::span<const std::uint32_t> words) {
-    Function* function = nullptr;
-    for (std::size_t at = 5; at < words.size();) {
-      const std::uint32_t count = words[at] >> 16;
-      const auto opcode = static_cast<spv::Op>(words[at] & 0xffffu);
-      if (opcode == spv::OpFunction) function = &functions_[words[at + 2]];
-      if (function) function->words += count;
-      if (function && opcode == spv::OpFunctionCall) function->calls.push_back(words[at + 3]);
-      at += count;
-    }
-  }
-
-  // Of the function that needs the most; no more than a little beyond the limit.
-  std::size_t most() {
-    std::size_t most = 0;
-    for (const auto& [id, function] : functions_) most = std::max(most, of(id));
-    return most;
-  }
-
- private:
-  struct Function {
-    std::size_t words = 0, inlined = 0;  // inlined: 0 before it is known
-    std::vector<std::uint32_t> calls;
-  };
-  std::size_t of(std::uint32_t id) {
-    Function& function = functions_[id];
-    if (function.inlined != 0) return function.inlined;
-    std::size_t sum = function.words;
-    for (const std::uint32_t called : function.calls)
-      if (sum <= ModuleLimits::kInlinedWords) sum += of(called);
-    return function.inlined = sum;
-  }
-
-  std::unordered_map<std::uint32_t, Function> functions_;
-};
-
 void require_fragment_shader(std::span<const std::uint32_t> words) {
   std::size_t entries = 0;
   bool is_fragment = false, has_shader = false;
-  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
-    const auto opcode = static_cast<spv::Op>(words[at] & 0xffffu);
-    if (opcode == spv::OpCapability) {
-      has_shader |= words[at + 1] == spv::CapabilityShader;
-      if (words[at + 1] == spv::CapabilityKernel) throw ShaderError("expected a shader, found an OpenCL kernel");
+  for_each_instruction(words, [&](spv::Op op, std::span<const std::uint32_t> operands) {
+    if (op == spv::OpCapability) {
+      has_shader |= operands[0] == spv::CapabilityShader;
+      if (operands[0] == spv::CapabilityKernel) throw ShaderError("expected a shader, found an OpenCL kernel");
     }
-    if (opcode != spv::OpEntryPoint) continue;
+    if (op != spv::OpEntryPoint) return;
     ++entries;
-    is_fragment = words[at + 1] == spv::ExecutionModelFragment;
-  }
+    is_fragment = operands[0] == spv::ExecutionModelFragment;
+  });
   if (!has_shader || entries != 1 || !is_fragment)
     throw ShaderError("expected a module with one entry point, a fragment shader's");
+}
+
+// Hints would make the optimizer leave functions as they are, which are then not supported; or repeat the bodies of
+// loops as often as a constant says.
+void remove_hints(std::vector<std::uint32_t>& words) {
+  for_each_instruction(words, [&](spv::Op op, std::span<const std::uint32_t> operands) {
+    const auto clear = [&](std::uint32_t bits) {
+      words[static_cast<std::size_t>(&operands[2] - words.data())] &= ~bits;
+    };
+    if (op == spv::OpFunction) clear(spv::FunctionControlDontInlineMask);
+    if (op == spv::OpLoopMerge) clear(spv::LoopControlUnrollMask);
+  });
+}
+
+// The module after the passes that `add` registers.
+template <class Add>
+void optimize(std::vector<std::uint32_t>& words, Add&& add) {
+  FirstMessage message;
+  spvtools::Optimizer optimizer(kEnvironment);
+  optimizer.SetMessageConsumer(message.consumer());
+  add(optimizer);
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);  // done already, without rules about layouts
+  options.set_max_id_bound(4 * ModuleLimits::kIds);
+  std::vector<std::uint32_t> optimized;
+  if (!optimizer.Run(words.data(), words.size(), &optimized, options))
+    throw ShaderError("SPIRV-Tools cannot simplify the shader" +
+                      (message.text().empty() ? std::string() : ": " + message.text()));
+  words = std::move(optimized);
 }
 
 }  // namespace
@@ -105,31 +94,34 @@ std::vector<std::uint32_t> simplify(std::span<const std::uint32_t> words, const 
   if (words.size() > ModuleLimits::kWords)
     throw ShaderError("expected at most " + std::to_string(ModuleLimits::kWords) + " words of SPIR-V, found " +
                       std::to_string(words.size()));
-  if (words.size() < 5 || words[0] != spv::MagicNumber)
+  if (words.size() < kModuleHeaderWords || words[0] != spv::MagicNumber)
     throw ShaderError("expected SPIR-V in this machine's byte order");
+  check_module(words);
   validate(words);
   require_fragment_shader(words);
-  if (InlinedWords(words).most() > ModuleLimits::kInlinedWords)
-    throw ShaderError("the shader's functions call each other so often that inlining them takes more than " +
-                      std::to_string(ModuleLimits::kInlinedWords) + " words");
 
-  FirstMessage message;
-  spvtools::Optimizer optimizer(kEnvironment);
-  optimizer.SetMessageConsumer(message.consumer());
-  optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass())
-      .RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(specialization))
-      .RegisterPass(spvtools::CreateFlattenDecorationPass())
-      .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
-      .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
-      .RegisterPerformancePasses();
-  spvtools::OptimizerOptions options;
-  options.set_run_validator(false);  // done above, without rules about layouts
-  options.set_max_id_bound(4 * ModuleLimits::kIds);
-  std::vector<std::uint32_t> simplified;
-  if (!optimizer.Run(words.data(), words.size(), &simplified, options))
-    throw ShaderError("SPIRV-Tools cannot simplify the shader" +
-                      (message.text().empty() ? std::string() : ": " + message.text()));
-  return simplified;
+  std::vector<std::uint32_t> module(words.begin(), words.end());
+  remove_hints(module);
+  optimize(module, [&](spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass())
+        .RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(specialization))
+        .RegisterPass(spvtools::CreateFlattenDecorationPass())
+        .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
+        .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
+  });
+  check_calls(module);
+  optimize(module, [](spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateWrapOpKillPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateMergeReturnPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+  });
+  check_values(module);
+  optimize(module, [](spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPerformancePasses().RegisterPass(spvtools::CreateCompactIdsPass());
+  });
+  return module;
 }
 
 }  // namespace beampipe

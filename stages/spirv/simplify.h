@@ -11,16 +11,10 @@ namespace beampipe {
 // Bits of specialization constants, by their SpecId.
 using Specialization = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
 
-// Limits on what a module may ask for; real shaders stay far below.
-struct ModuleLimits {
-  static constexpr std::size_t kWords = std::size_t{1} << 20;
-  static constexpr std::size_t kInlinedWords = std::size_t{1} << 20;  // after all functions are inlined
-  static constexpr std::uint32_t kIds = 1u << 20;
-};
-
 // Validates the module with SPIRV-Tools by the rules that all versions of SPIR-V share, and simplifies it with its
-// optimizer: functions are inlined, variables become values, constants are folded, and what has no effect goes. Throws
-// ShaderError.
+// optimizer: functions are inlined, variables become values, constants are folded, and what has no effect goes. Loops
+// stay loops, and a function that only ends the invocation may stay a function. Throws ShaderError, also for modules
+// beyond ModuleLimits.
 std::vector<std::uint32_t> simplify(std::span<const std::uint32_t> words, const Specialization& specialization);
 
 }  // namespace beampipe

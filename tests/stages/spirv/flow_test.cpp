@@ -392,6 +392,91 @@ OpFunctionEnd
   }
 }
 
+// A loop of 20 turns calls, in its continue construct, a function that ends odd lanes in the turn of their number.
+ShaderParts ending_in_continue(const std::string& how) {
+  return {.body = R"(
+%lane = OpCompositeExtract %uint %vi 0
+OpBranch %header
+%header = OpLabel
+%n = OpPhi %uint %u0 %entry %n1 %again
+%goes_on = OpULessThan %bool %n %u20
+OpLoopMerge %after %again None
+OpBranchConditional %goes_on %again %after
+%again = OpLabel
+%n1 = OpFunctionCall %uint %next_after %n %lane
+OpBranch %header
+%after = OpLabel
+%r = OpCompositeConstruct %u4 %n %lane %u0 %u0
+OpStore %iout %r
+)",
+          .globals = R"(
+%u20 = OpConstant %uint 20
+%of_two = OpTypeFunction %uint %uint %uint
+)",
+          .functions = R"(
+%next_after = OpFunction %uint None %of_two
+%turn = OpFunctionParameter %uint
+%number = OpFunctionParameter %uint
+%begin = OpLabel
+%odd = OpBitwiseAnd %uint %number %u1
+%is_odd = OpIEqual %bool %odd %u1
+%is_here = OpIEqual %bool %turn %number
+%ends = OpLogicalAnd %bool %is_odd %is_here
+OpSelectionMerge %stays None
+OpBranchConditional %ends %leaves %stays
+%leaves = OpLabel
+)" + how + R"(
+%stays = OpLabel
+%next = OpIAdd %uint %turn %u1
+OpReturnValue %next
+OpFunctionEnd
+)",
+          .capabilities = "OpCapability DemoteToHelperInvocationEXT\nOpExtension \"SPV_KHR_terminate_invocation\"\n"};
+}
+
+TEST(SpirvFlow, InvocationsEndInFunctionsOfContinueConstructs) {
+  std::uint64_t instructions = 0;
+  for (const char* how : {"OpKill", "OpTerminateInvocation", "OpDemoteToHelperInvocation\nOpBranch %stays"}) {
+    SCOPED_TRACE(how);
+    TestShader shader(ending_in_continue(how));
+    EXPECT_TRUE(shader.program.discards);
+    for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) shader.set_integer(3, 0, lane, lane);
+    EXPECT_TRUE(shader.run());
+    EXPECT_EQ(shader.executor.kept(), ~std::uint64_t{0xaaaaa});
+    for (std::uint32_t lane = 0; lane < kShaderLanes; lane += 2) {
+      EXPECT_EQ(shader.integer(0, lane), 20u);
+      EXPECT_EQ(shader.integer(1, lane), lane);
+    }
+    if (how == std::string("OpKill")) instructions = shader.counts.instructions;
+  }
+  TestShader goes_on(ending_in_continue("OpDemoteToHelperInvocation\nOpBranch %stays"));
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) goes_on.set_integer(3, 0, lane, lane);
+  goes_on.run();
+  EXPECT_LT(instructions, goes_on.counts.instructions);
+}
+
+// The compiler's hint changes nothing.
+TEST(SpirvFlow, FunctionsThatAskNotToBeInlined) {
+  TestShader shader(ShaderParts{.body = R"(
+%x = OpCompositeExtract %uint %vi 0
+%y = OpFunctionCall %uint %twice %x
+%r = OpCompositeConstruct %u4 %y %y %y %y
+OpStore %iout %r
+)",
+                                .globals = "%number_to_number = OpTypeFunction %uint %uint\n",
+                                .functions = R"(
+%twice = OpFunction %uint DontInline %number_to_number
+%start = OpFunctionParameter %uint
+%begin = OpLabel
+%sum = OpIAdd %uint %start %start
+OpReturnValue %sum
+OpFunctionEnd
+)"});
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) shader.set_integer(3, 0, lane, lane);
+  shader.run();
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) EXPECT_EQ(shader.integer(2, lane), 2 * lane);
+}
+
 // Three times an odd number is never 0.
 TEST(SpirvFlow, EndlessLoopsAreStopped) {
   TestShader shader(ShaderParts{.body = R"(
@@ -410,10 +495,35 @@ OpBranch %header
 OpStore %iout %r
 )"});
   EXPECT_TRUE(shader.run());
-  shader.set_integer(3, 0, 5, 1);
+  shader.set_integer(3, 0, 5, 1), shader.set_integer(3, 0, 9, 1);
   EXPECT_FALSE(shader.run());
-  EXPECT_EQ(shader.executor.kept(), ~(std::uint64_t{1} << 5));
+  EXPECT_EQ(shader.counts.stopped, 2u);
+  EXPECT_EQ(shader.executor.kept(), ~(std::uint64_t{1} << 5 | std::uint64_t{1} << 9));
   EXPECT_EQ(shader.integer(1, 4), 1u);
+}
+
+// The number in the lane is counted down, in steps of about ten.
+TEST(SpirvFlow, LanesMayBeStoppedSooner) {
+  TestShader shader(ShaderParts{.body = R"(
+%first = OpCompositeExtract %uint %vi 0
+OpBranch %header
+%header = OpLabel
+%x = OpPhi %uint %first %entry %x1 %again
+%goes_on = OpINotEqual %bool %x %u0
+OpLoopMerge %after %again None
+OpBranchConditional %goes_on %again %after
+%again = OpLabel
+%x1 = OpISub %uint %x %u1
+OpBranch %header
+%after = OpLabel
+%r = OpCompositeConstruct %u4 %x %u1 %u1 %u1
+OpStore %iout %r
+)"});
+  shader.set_integer(3, 0, 3, 50), shader.set_integer(3, 0, 4, 500);
+  EXPECT_TRUE(shader.run());
+  shader.executor.run(shader.resources, kShaderLanes, ~std::uint64_t{0}, 0, shader.counts, 2000);
+  EXPECT_EQ(shader.counts.stopped, 1u);
+  EXPECT_EQ(shader.executor.kept(), ~(std::uint64_t{1} << 4));
 }
 
 // A loop that only moves values around: 100 of them, which the last one enters at the front.
@@ -466,7 +576,8 @@ OpStore %out %d
   }
   constexpr std::uint64_t kEvery = ~std::uint64_t{0};
   const std::uint64_t helpers = 0x2;  // lane 1
-  EXPECT_TRUE(shader.executor.run(shader.resources, kShaderLanes, kEvery, helpers, shader.counts));
+  shader.executor.run(shader.resources, kShaderLanes, kEvery, helpers, shader.counts);
+  EXPECT_EQ(shader.counts.stopped, 0u);
   EXPECT_EQ(shader.executor.kept(), 0xeeeeeeeeeeeeeeeeu & ~helpers);
   EXPECT_EQ(shader.integer(0, 0), 0u);
   EXPECT_EQ(shader.integer(1, 0), 1u);

@@ -180,7 +180,12 @@ class TestShader {
   void set_integer(std::uint32_t location, std::uint32_t component, std::size_t lane, std::uint32_t value) {
     if (LaneRow* row = input(location, component)) row->bits[lane] = value;
   }
-  bool run(std::size_t lanes = kShaderLanes) { return executor.run(resources, lanes, ~std::uint64_t{0}, 0, counts); }
+  // False if lanes were stopped.
+  bool run(std::size_t lanes = kShaderLanes) {
+    const std::uint64_t before = counts.stopped;
+    executor.run(resources, lanes, ~std::uint64_t{0}, 0, counts);
+    return counts.stopped == before;
+  }
 
   LaneProgram program;
   ShaderExecutor executor;

@@ -1,0 +1,40 @@
+// module_limits: SPIR-V -> an error if SPIRV-Tools would take long to validate or to simplify it
+//
+// The time of SPIRV-Tools grows with the square of some numbers and with products of others, which a short module can
+// make large: a structure of two structures of two structures. At these limits a module takes a few seconds; real
+// shaders stay far below them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace beampipe {
+
+struct ModuleLimits {
+  static constexpr std::size_t kWords = std::size_t{1} << 18;
+  static constexpr std::uint32_t kIds = 1u << 20;
+  static constexpr std::uint32_t kNesting = 64;  // of selections and loops
+  static constexpr std::uint64_t kBlocks = 4096;
+  // Parts of types and of values, each with the parts of its parts.
+  static constexpr std::uint64_t kParts = 1u << 20;
+  static constexpr std::uint64_t kGroupDecorations = 1u << 16;  // decorations of groups, for each member
+  // After all functions are inlined.
+  static constexpr std::uint64_t kInlinedWords = 1u << 17;
+  static constexpr std::uint64_t kSteps = 1u << 23;  // from values back to what they are copies, parts or changes of
+  static constexpr std::uint64_t kPhiOperands = 1u << 19;
+};
+
+// All throw ShaderError.
+
+// Before validation: of any words. Blocks, parts of types where arrays count as one element, decorations.
+void check_module(std::span<const std::uint32_t> words);
+
+// Before inlining: of a valid module without specialization constants. Functions must not call themselves; words,
+// blocks, and parts of values, where the elements of short arrays count.
+void check_calls(std::span<const std::uint32_t> words);
+
+// Before the rest: of one function, which calls none. Steps from values to others; values that may depend on the way.
+void check_values(std::span<const std::uint32_t> words);
+
+}  // namespace beampipe
