@@ -196,7 +196,7 @@ class DepthOrder {
   void find_repetitions(std::uint32_t first, std::uint32_t end) {
     std::unordered_set<std::uint32_t> written;
     for (std::uint32_t i = first; i < end; ++i) {
-      if (!placements_[i].is_drawn && writes_depth(depth_of(i))) note_pre_pass(i);
+      if (!writes_color(frame_.draws[i].state) && writes_depth(depth_of(i))) note_pre_pass(i);
       if (may_be_cut_out(trace_, frame_.draws[i])) continue;
       repeats_earlier_[i] = written.contains(geometry_[i]);
       if (writes_depth(depth_of(i))) written.insert(geometry_[i]);
