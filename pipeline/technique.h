@@ -94,6 +94,12 @@ struct Buffer {
   bool operator==(const Buffer&) const = default;
 };
 
+// Invocations of a draw's program that took too many steps (stages/surface/program_shader.h).
+struct StoppedDraw {
+  std::uint64_t draw = 0, invocations = 0;
+  bool operator==(const StoppedDraw&) const = default;
+};
+
 struct FrameResult {
   Image image;
   std::map<std::string, std::vector<float>> pixel_counters;  // name -> width x height values ("fragments", ...)
@@ -106,6 +112,7 @@ struct FrameResult {
   std::vector<std::uint64_t> bin_operations, bin_invocations;
   CacheReach cache_reach;
   std::vector<ArrayBytes> dram_arrays;  // of each stage, they add up to its dram_bytes
+  std::vector<StoppedDraw> stopped;     // only draws that have any
 };
 
 // Of colours up to 1: two roundings of half a unit in the last place, which is 2^-12.

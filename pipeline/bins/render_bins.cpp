@@ -434,6 +434,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     result.buffers.push_back({kTranslucentLayer, in_memory(framebuffer) - in_memory(plan.framebuffer)});
   const auto side = static_cast<std::uint32_t>(grid.size);
   result.bin_pixels = std::min(side, context.frame.width) * std::min(side, context.frame.height);
+  for (std::uint32_t draw = 0; draw < context.frame.draws.size(); ++draw)
+    if (const std::uint64_t stopped = context.shader.stopped(draw)) result.stopped.push_back({draw, stopped});
   return result;
 }
 

@@ -13,7 +13,8 @@
 namespace beampipe {
 namespace {
 
-constexpr std::size_t kGroup = 4;  // lanes
+constexpr std::size_t kGroup = 4;                    // lanes
+constexpr std::uint32_t kStepsOfEndless = 1u << 12;  // of programs that are thought to have no end
 
 // What is not a number is 0.
 float limited(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
@@ -64,7 +65,7 @@ ProgramShader::ProgramShader(const SetupTriangles& triangles, const Trace& trace
   for (std::uint32_t i = 0; i < draws_.size(); ++i) {
     if (of_draw[i].empty()) continue;
     draws_[i] = bind(frame.draws[i]);
-    draws_[i].cost = measured(i, of_draw[i]);
+    measure(i, of_draw[i]);
   }
 }
 
@@ -286,7 +287,7 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
     ProgramImages images(*draw.program, draw.images, active & ~helpers, texels);
     ShaderResources resources = draw.resources;
     resources.images = &images;
-    executor.run(resources, groups.size() * kGroup, active, helpers, counts);
+    executor.run(resources, groups.size() * kGroup, active, helpers, counts, draw.most_steps);
     const std::uint64_t kept = executor.kept();
     for (std::size_t lane = 0; lane < kShaderLanes; ++lane) {
       if (place_of[lane] == Group::kNone) continue;
@@ -312,10 +313,11 @@ void ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlac
                               TexelRequests* texels, FragmentVerdict* verdicts) const {
   const std::vector<Group> groups = grouped(*draw.program, places);
   constexpr std::size_t kMost = kShaderLanes / kGroup;
-  ShaderCounts counts;  // what is charged comes from measured()
+  ShaderCounts counts;  // what is charged comes from measure()
   for (std::size_t first = 0; first < groups.size(); first += kMost)
     run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, texels,
         verdicts, counts);
+  if (counts.stopped > 0) *draw.stopped += counts.stopped;
 }
 
 void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels,
@@ -342,7 +344,7 @@ void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* color
   }
 }
 
-ProgramShader::Cost ProgramShader::measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const {
+void ProgramShader::measure(std::uint32_t draw, std::span<const std::uint32_t> triangles) {
   constexpr std::size_t kMost = 16;
   std::vector<ProgramPlace> places;
   const std::size_t count = std::min(kMost, triangles.size());
@@ -360,18 +362,18 @@ ProgramShader::Cost ProgramShader::measured(std::uint32_t draw, std::span<const 
                       .u = x - std::floor(x),
                       .v = y - std::floor(y)});
   }
-  const BoundDraw& bound = draws_[draw];
+  BoundDraw& bound = draws_[draw];
   std::array<glm::vec4, kMost> colors;
   ShaderCounts counts;
   run(bound, places, grouped(*bound.program, places), colors.data(), nullptr, nullptr, counts);
   const auto mean = [&](std::uint64_t sum) { return (sum + counts.invocations / 2) / counts.invocations; };
-  Cost cost;
+  if (counts.stopped > 0) bound.most_steps = kStepsOfEndless;
+  Cost& cost = bound.cost;
   cost.ops = {mean(counts.ops.mul_add), mean(counts.ops.add),     mean(counts.ops.bit), mean(counts.ops.fetch),
               mean(counts.ops.special), mean(counts.ops.convert), mean(counts.ops.wide)};
   cost.ops.fetch += mean(counts.texture_requests);
   cost.helpers = bound.program->takes_differences ? 2 : 0;
   cost.input_bytes = kSurfaceBytes + 3 * bound.stride * sizeof(float);
-  return cost;
 }
 
 const SetupTriangles& without_refused(SetupTriangles& triangles, const Frame& frame, const ProgramSet& programs) {

@@ -11,11 +11,16 @@
 // Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point,
 // SampleMask has all bits, and all others are 0. Of the outputs, the colour at location 0 is used, limited to 0..1
 // unless the target stores floats, and to alphas of 0 and more; and FragDepth and SampleMask.
+//
+// Invocations that take more than ShaderExecutor::kMostSteps are stopped and count as discarded. Where some of those
+// that cost() looks at are, the program is thought to have no end, and all of the draw are stopped much earlier.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,6 +79,9 @@ class ProgramShader {
 
   bool reads_images(std::uint32_t draw) const { return !draws_[draw].program->images.empty(); }
 
+  // How many invocations of shade() have been stopped, helpers included.
+  std::uint64_t stopped(std::uint32_t draw) const { return *draws_[draw].stopped; }
+
  private:
   struct Input {
     enum class Kind { varying, frag_coord, front_facing, helper, primitive, half, all_bits, zero };
@@ -96,6 +104,8 @@ class ProgramShader {
     BoundImages images{};
     glm::dvec4 to_w{};  // clip w of a position
     Cost cost{};
+    std::uint32_t most_steps = ShaderExecutor::kMostSteps;
+    std::unique_ptr<std::atomic<std::uint64_t>> stopped = std::make_unique<std::atomic<std::uint64_t>>(0);
   };
   struct Lane {
     std::size_t number;
@@ -115,7 +125,7 @@ class ProgramShader {
                  FragmentVerdict* verdicts) const;
   void run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
            glm::vec4* colors, TexelRequests* texels, FragmentVerdict* verdicts, ShaderCounts& counts) const;
-  Cost measured(std::uint32_t draw, std::span<const std::uint32_t> triangles) const;
+  void measure(std::uint32_t draw, std::span<const std::uint32_t> triangles);
 
   const SetupTriangles& triangles_;
   const Trace& trace_;

@@ -118,6 +118,8 @@ class SurfaceShader {
 
   // Does a program shade the triangle, which is not flat?
   bool is_program(std::uint32_t triangle) const { return triangles_.surfaces[triangle].material == kProgramSurface; }
+  // As in ProgramShader.
+  std::uint64_t stopped(std::uint32_t draw) const { return programs_.stopped(draw); }
   // As add_texels, for invocations of programs, whose requests have no order.
   void add_program_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const;
 

@@ -376,6 +376,79 @@ TEST(ProgramDraws, ShadersThatCannotRunAreGreyAndNoted) {
   EXPECT_FALSE(notes[0].left_out);
 }
 
+// Counts a number down from 2000 times the first input, and without end where the second input is 1, not 0.
+const ShaderParts kCountdown{.body = R"(
+%x = OpCompositeExtract %float %va 0
+%y = OpCompositeExtract %float %va 1
+%product = OpFMul %float %x %thousands
+OpBranch %header
+%header = OpLabel
+%left = OpPhi %float %product %entry %less %again
+%is_positive = OpFOrdGreaterThan %bool %left %f0
+%is_endless = OpFOrdGreaterThan %bool %y %half_
+%goes_on = OpLogicalOr %bool %is_positive %is_endless
+OpLoopMerge %after %again None
+OpBranchConditional %goes_on %again %after
+%again = OpLabel
+%less = OpFSub %float %left %f1
+OpBranch %header
+%after = OpLabel
+%white = OpSelect %float %is_positive %f0 %f1
+%r = OpCompositeConstruct %v4 %white %white %white %f1
+OpStore %out %r
+)",
+                             .globals = "%thousands = OpConstant %float 2000\n%half_ = OpConstant %float 0.5\n"};
+
+// The left and the right half of the picture, each with its inputs. Nothing is where invocations are stopped.
+ProgramTrace countdown_scene(const std::vector<float>& left, const std::vector<float>& right) {
+  ProgramTrace scene(8, 8, kCountdown);
+  for (const float side : {-1.0f, 0.0f}) {
+    const std::vector<float>& inputs = side < 0 ? left : right;
+    scene.add_quad({{{side, 1, 0, 1}, inputs},
+                    {{side + 1, 1, 0, 1}, inputs},
+                    {{side, -1, 0, 1}, inputs},
+                    {{side + 1, -1, 0, 1}, inputs}});
+  }
+  scene.trace.frames[0].background = glm::vec3(0);
+  return scene;
+}
+
+TEST(ProgramDraws, InvocationsWithoutEndAreStoppedAndCounted) {
+  ProgramTrace scene = countdown_scene({1, 0}, {0, 1});
+  for (const char* spec : kSpecs)
+    expect_picture(scene.trace, spec, [](auto x, auto) { return glm::vec3(x < 4 ? 1 : 0); });
+  const auto stopped = [&](const char* spec, int threads) { return rendered(scene.trace, spec, threads).stopped; };
+  EXPECT_EQ(stopped("msaa:1", 1), (std::vector<StoppedDraw>{{1, 32}}));  // 4 by 8 pixels
+  for (const char* spec : {"beam", "msaa:4", "reference"}) {
+    const std::vector<StoppedDraw> one = stopped(spec, 1);
+    ASSERT_EQ(one.size(), 1u) << spec;
+    EXPECT_EQ(one[0].draw, 1u);
+    EXPECT_GE(one[0].invocations, 32u);
+    EXPECT_EQ(stopped(spec, 4), one) << spec;
+  }
+  std::vector<DrawNote> notes;
+  add_stopped(scene.trace, 0, "msaa:1", stopped("msaa:1", 1), notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(text_of(notes[0]),
+            "1 draw (2 triangles) is drawn in the nearest way: shader \"shader\" is stopped where it takes too many "
+            "steps (msaa:1): 32 invocations");
+  EXPECT_EQ(notes_form().write(notes).at(0).at("invocations"), 32);
+}
+
+// 2000 turns of a loop are allowed, unless invocations of the same draw have no end.
+TEST(ProgramDraws, DrawsWithoutEndAreStoppedSooner) {
+  ProgramTrace scene = countdown_scene({1, 0}, {0.01f, 0});
+  EXPECT_TRUE(rendered(scene.trace, "msaa:1").stopped.empty());
+  // The second triangle of the left half has no end.
+  Mesh& mesh = scene.trace.meshes[0];
+  mesh.positions.insert(mesh.positions.end(), {mesh.positions[2], mesh.positions[1], mesh.positions[3]});
+  mesh.ws.insert(mesh.ws.end(), 3, 1.0f);
+  for (int i = 0; i < 3; ++i)
+    for (const float number : {1.0f, 1.0f}) mesh.varyings.push_back(std::bit_cast<std::uint32_t>(number));
+  mesh.triangles[1] = {4, 5, 6};
+  EXPECT_EQ(rendered(scene.trace, "msaa:1").stopped, (std::vector<StoppedDraw>{{0, 32}}));
+}
+
 TEST(ProgramDraws, ThreadsChangeNothing) {
   const ProgramTrace scene = textured_scene();
   for (const char* spec : {"msaa:4", "beam"}) {

@@ -98,8 +98,15 @@ std::string text_of(const Technique& technique, const ColorCheck& check) {
 // One frame's check.
 class FrameCheck {
  public:
-  FrameCheck(const Trace& trace, std::size_t number, const TextureSet& textures, OutputFolder* output)
-      : trace_(trace), number_(number), frame_(trace.frames[number]), textures_(textures), output_(output) {
+  // Adds to `notes` what the picture shows.
+  FrameCheck(const Trace& trace, std::size_t number, const TextureSet& textures, std::vector<DrawNote>& notes,
+             OutputFolder* output)
+      : trace_(trace),
+        number_(number),
+        frame_(trace.frames[number]),
+        textures_(textures),
+        notes_(notes),
+        output_(output) {
     // A pixel's depths, and what is rasterized at a time.
     require_memory(trace, frame_, 64, "frame " + std::to_string(number), machine_memory());
     found_ = sampled_depths(trace, frame_, &textures);
@@ -130,11 +137,12 @@ class FrameCheck {
     options.memory.modelled = false;
     options.memory_limit = machine_memory() / 2;
     options.textures = &textures_;
-    const Image image = technique.render(trace_, number_, options).image;
-    const ColorCheck check = check_colors(trace_, frame_, image, found_.draw);
+    const FrameResult result = technique.render(trace_, number_, options);
+    add_stopped(trace_, number_, technique.spec, result.stopped, notes_);
+    const ColorCheck check = check_colors(trace_, frame_, result.image, found_.draw);
     json_["colors"] = to_json(technique, check);
     text_ += name() + text_of(technique, check);
-    write("colors", color_difference_picture(trace_, frame_, image));
+    write("colors", color_difference_picture(trace_, frame_, result.image));
   }
 
   void write(const char* what, const std::vector<std::uint8_t>& picture) const {
@@ -149,6 +157,7 @@ class FrameCheck {
   std::size_t number_;
   const Frame& frame_;
   const TextureSet& textures_;
+  std::vector<DrawNote>& notes_;
   OutputFolder* output_;
   SampledDepths found_;
   Json json_;
@@ -164,16 +173,16 @@ void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
     output.emplace(arguments.output, gate);
   }
   const TextureSet textures(trace);
-  const std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs(), "");
-  tell_notes(notes);
+  std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs(), "");
   Json json = {{"beampipe_check_capture", 1}, {"trace", arguments.trace}, {"frames", Json::array()}};
-  if (!notes.empty()) json["notes"] = notes_form().write(notes);
   std::string text;
   for (const std::size_t i : frames) {
-    const FrameCheck check(trace, i, textures, output ? &*output : nullptr);
+    const FrameCheck check(trace, i, textures, notes, output ? &*output : nullptr);
     json["frames"].push_back(check.json());
     text += check.text();
   }
+  tell_notes(notes);
+  if (!notes.empty()) json["notes"] = notes_form().write(notes);
   std::cout << (arguments.json ? json_text(json) : text);
 }
 

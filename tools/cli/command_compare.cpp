@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "pipeline/spec.h"
 #include "tools/cli/commands.h"
@@ -69,7 +70,7 @@ void compare(const RunArguments& arguments, const CompareOptions& options, const
   }
   Report report = comparison.run();
   record_inspections(comparison.plan(), pixels, report, output);
-  finish_report(output, report);
+  finish_report(output, comparison.plan().trace, std::move(report));
   if (options.causes) tell_unexplained(unexplained);
   events.write(gate);
 }

@@ -1,6 +1,7 @@
 // beampipe run: pictures, counters and times of one or more techniques.
 
 #include <memory>
+#include <utility>
 
 #include "tools/cli/commands.h"
 #include "tools/cli/memory_trace.h"
@@ -56,7 +57,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
       output.keep();
     }
   }
-  finish_report(output, report);
+  finish_report(output, plan.trace, std::move(report));
   events.write(gate);
   memory_trace.write(gate);
 }

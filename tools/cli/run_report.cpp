@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/resume.h"
 #include "tools/report/report_json.h"
 #include "tools/report/report_text.h"
@@ -25,7 +26,13 @@ void tell_finished(const OutputFolder& output) {
   std::cout << "already finished\nreport: " << (output.path() / "report.json").string() << "\n";
 }
 
-void finish_report(OutputFolder& output, const Report& report) {
+void finish_report(OutputFolder& output, const Trace& trace, Report report) {
+  std::vector<DrawNote> notes;
+  for (const TechniqueReport& result : report.results)
+    for (const FrameReport& frame : result.frames)
+      add_stopped(trace, frame.index, result.technique, frame.stopped, notes);
+  tell_notes(notes);
+  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
   output.write("report.json", [&](const OutputFolder::WriteBytes& write) { write_json(report, write); });
   output.keep();
   FrameRecords(output, report.made_by).remove();

@@ -14,7 +14,7 @@ namespace beampipe {
 void tell_resumption(const RunPlan& plan, std::size_t finished_frames);
 void tell_finished(const OutputFolder& output);
 
-// Writes report.json, removes the records of the frames and prints the tables.
-void finish_report(OutputFolder& output, const Report& report);
+// Notes what the frames have shown, writes report.json, removes the records of the frames and prints the tables.
+void finish_report(OutputFolder& output, const Trace& trace, Report report);
 
 }  // namespace beampipe

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "stages/geometry/draw_plan.h"
 
@@ -40,6 +41,17 @@ std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t
   return notes;
 }
 
+void add_stopped(const Trace& trace, std::size_t frame, const std::string& spec,
+                 const std::vector<StoppedDraw>& stopped, std::vector<DrawNote>& notes) {
+  for (const auto& [number, invocations] : stopped) {
+    const Draw& draw = trace.frames[frame].draws[number];
+    add_note(notes,
+             "shader " + in_quotes(trace.programs[draw.program->program].name) +
+                 " is stopped where it takes too many steps (" + spec + ")",
+             false, 1, trace.meshes[draw.mesh].triangles.size(), invocations);
+  }
+}
+
 std::string text_of(const DrawNote& note) {
   const auto counted = [](std::uint64_t count, const char* name) {
     return std::to_string(count) + ' ' + name + (count == 1 ? "" : "s");
@@ -47,7 +59,8 @@ std::string text_of(const DrawNote& note) {
   const char* const verb =
       note.left_out ? (note.draws == 1 ? " is left out: " : " are left out: ")
                     : (note.draws == 1 ? " is drawn in the nearest way: " : " are drawn in the nearest way: ");
-  return counted(note.draws, "draw") + " (" + counted(note.triangles, "triangle") + ')' + verb + note.reason;
+  return counted(note.draws, "draw") + " (" + counted(note.triangles, "triangle") + ')' + verb + note.reason +
+         (note.invocations > 0 ? ": " + counted(note.invocations, "invocation") : "");
 }
 
 Form<std::vector<DrawNote>> notes_form() {
@@ -56,7 +69,13 @@ Form<std::vector<DrawNote>> notes_form() {
           .written("reason", &DrawNote::reason, form::text(), "What it is.")
           .written("left_out", &DrawNote::left_out, form::boolean(), "Left out; otherwise drawn in the nearest way.")
           .written("draws", &DrawNote::draws, form::count(), "So many.")
-          .written("triangles", &DrawNote::triangles, form::count(), "So many.")));
+          .written("triangles", &DrawNote::triangles, form::count(), "So many.")
+          .written(
+              "invocations",
+              [](const DrawNote& note) {
+                return note.invocations > 0 ? std::optional(note.invocations) : std::nullopt;
+              },
+              form::count(1), "So many of fragment shaders, if it is not about all of the draws.")));
 }
 
 void tell_notes(const std::vector<DrawNote>& notes) {

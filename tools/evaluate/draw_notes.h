@@ -20,6 +20,10 @@ std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t
 // The specs of those techniques that do not, as words.
 std::string drawing_by_depth(const std::vector<Technique>& techniques);
 
+// Adds what rendering a frame has shown: the programs that were stopped. `spec`: of who rendered it.
+void add_stopped(const Trace& trace, std::size_t frame, const std::string& spec,
+                 const std::vector<StoppedDraw>& stopped, std::vector<DrawNote>& notes);
+
 // "12 draws (340 triangles) are left out: stencil test"
 std::string text_of(const DrawNote& note);
 

@@ -172,6 +172,12 @@ ArrayBytes array_bytes_of(const Json& json) {
   return {stage_named(json), json.at("array").get<std::string>(), bytes("read"), bytes("written"), bytes("compressed")};
 }
 
+Form<StoppedDraw> stopped_form() {
+  return ObjectForm<StoppedDraw>()
+      .written("draw", &StoppedDraw::draw, form::count(), "The draw's index in the frame.")
+      .written("invocations", &StoppedDraw::invocations, form::count(1), "So many.");
+}
+
 Form<PixelCounterStats> statistics_form() {
   return ObjectForm<PixelCounterStats>()
       .written("mean", &PixelCounterStats::mean, form::number(), "Over all pixels.")
@@ -234,7 +240,9 @@ Form<FrameOf> make_frame_form() {
       .written("bin_invocations", filled(&Frame::bin_invocations), form::list(form::count()),
                "Invocations of fragment shaders that each bin starts, row by row.")
       .written("dram_arrays", filled(&Frame::dram_arrays), form::list(array_form()),
-               "What each stage moves to and from DRAM, by array.");
+               "What each stage moves to and from DRAM, by array.")
+      .written("stopped", filled(&Frame::stopped), form::list(stopped_form()),
+               "Invocations of programs' fragment shaders that took too many steps and count as discarded, by draw.");
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
     for (const CounterInfo& counter : stage_counters())
       if (counter.name == std::string_view(column))
@@ -336,6 +344,9 @@ FrameReport frame_of(const Json& json) {
       for (const Json& of_bin : list->elements()) of_bins->push_back(of_bin.get<std::uint64_t>());
   if (const Json* const arrays = json.find("dram_arrays"))
     for (const Json& each : arrays->elements()) frame.dram_arrays.push_back(array_bytes_of(each));
+  if (const Json* const stopped = json.find("stopped"))
+    for (const Json& each : stopped->elements())
+      frame.stopped.push_back({each.at("draw").get<std::uint64_t>(), each.at("invocations").get<std::uint64_t>()});
   for (const Json& buffer : json.at("buffers").elements())
     if (buffer.at("name") != kABuffer)
       frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),

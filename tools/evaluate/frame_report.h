@@ -60,6 +60,7 @@ struct FrameReport {
   // As in FrameResult.
   std::vector<std::uint64_t> bin_operations, bin_invocations;
   std::vector<ArrayBytes> dram_arrays;
+  std::vector<StoppedDraw> stopped;
 
   // What the pixels of a bin take on chip; 0 if they are in memory.
   double open_pixel_bytes() const { return peak_bytes_of(kOpenPixels); }

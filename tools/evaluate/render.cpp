@@ -73,6 +73,7 @@ void add_counters(const FrameResult& result, FrameReport& report) {
   report.bin_operations = result.bin_operations;
   report.bin_invocations = result.bin_invocations;
   report.dram_arrays = result.dram_arrays;
+  report.stopped = result.stopped;
 }
 
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
@@ -148,6 +149,7 @@ FrameResult render_kept(const Technique& technique, const RunPlan& plan, std::si
   result.bin_operations = std::move(kept.report.bin_operations);
   result.bin_invocations = std::move(kept.report.bin_invocations);
   result.dram_arrays = std::move(kept.report.dram_arrays);
+  result.stopped = std::move(kept.report.stopped);
   return result;
 }
 

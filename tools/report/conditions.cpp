@@ -152,7 +152,9 @@ Json report_conditions(const ReportFile& report) {
   for (const Json& note : notes.elements())
     add(note.at("left_out").get<bool>() ? "left out" : "drawn otherwise",
         note.at("reason").get<std::string>() + ": " + counted(note.at("draws").get<std::uint64_t>(), "draw") + ", " +
-            counted(note.at("triangles").get<std::uint64_t>(), "triangle"));
+            counted(note.at("triangles").get<std::uint64_t>(), "triangle") +
+            (note.contains("invocations") ? ", " + counted(note.at("invocations").get<std::uint64_t>(), "invocation")
+                                          : ""));
   return conditions;
 }
 

@@ -213,7 +213,8 @@ ObjectForm<Report> head_form() {
                "The same by the metric, if that is another.")
       .written("visibility_msaa_ladder", form::filled(&Report::visibility_ladder), ladder_form(),
                "Those in visibility alone, where surfaces vary.")
-      .written("notes", form::filled(&Report::notes), notes_form(), "What the frames ask for and no technique does.");
+      .written("notes", form::filled(&Report::notes), notes_form(),
+               "What the frames ask for and no technique does, and shaders that were stopped.");
 }
 
 // The lines of a value that stands `level` levels deep, as in json_text. Line ends within strings are escaped.

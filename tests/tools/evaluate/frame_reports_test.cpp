@@ -14,6 +14,7 @@ FrameReport report_of_frame(std::size_t index) {
   frame.pixels = 1000 + index;
   frame.buffers = {{"open_pixels", 1ull << 60, true}};
   frame.pixel_counters["fragments"] = {2.5, 61};
+  frame.stopped = {{3, 120 + index}, {5, 1}};
   StageCounters stage{StageId::compose};
   stage.items_in = (1ull << 63) + index;
   frame.stages = {stage, StageCounters{StageId::resolve}};

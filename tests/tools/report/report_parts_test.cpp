@@ -274,7 +274,8 @@ TEST_F(ReportParts, ConditionsTellHowTheNumbersWereFound) {
   text.insert(text.find("\"claims\""), R"("version": "1.2.3", "hardware_named": "our gpus/some.json", "trace_frames": 9,
     "frames": [{"index": 3, "width": 320, "height": 180, "triangles": 1234567, "draws": 2, "lights": 1},
                {"index": 4, "width": 320, "height": 180, "triangles": 7, "draws": 3, "lights": 1}],
-    "notes": [{"reason": "stencil test", "left_out": true, "draws": 1, "triangles": 34}],
+    "notes": [{"reason": "stencil test", "left_out": true, "draws": 1, "triangles": 34},
+              {"reason": "stopped", "left_out": false, "draws": 2, "triangles": 5, "invocations": 6789}],
     "made_by": {"command": "compare", "techniques": ["beam", "msaa:8"], "frames": "3-4", "repeat": 5, "memory_model": false,
                 "memory_system": "0", "shading_options": " --material-cost 200,4", "ladder": [1, 8],
                 "causes": true, "orders": false}, )");
@@ -292,6 +293,7 @@ TEST_F(ReportParts, ConditionsTellHowTheNumbersWereFound) {
   EXPECT_EQ(found["hardware"], "some (Some GPU, 1000 MHz)");
   EXPECT_EQ(found["program"], "beampipe 1.2.3, 1 thread, AVX2");
   EXPECT_EQ(found["left out"], "stencil test: 1 draw, 34 triangles");
+  EXPECT_EQ(found["drawn otherwise"], "stopped: 2 draws, 5 triangles, 6\u202f789 invocations");
   EXPECT_EQ(command_of(read()), "") << "an older report does not say what made it";
 }
 

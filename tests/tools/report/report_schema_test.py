@@ -116,7 +116,8 @@ class SchemaTest(unittest.TestCase):
 
         for schema, results, absent in [
                 (REPORT.schema, self.reports,
-                 {"notes/reason", "notes/left_out", "notes/draws", "notes/triangles", "notes",  # of captured programs
+                 {"notes/reason", "notes/left_out", "notes/draws", "notes/triangles", "notes/invocations", "notes",  # of captured programs
+                  *(f"results/frames/stopped{key}" for key in ("", "/draw", "/invocations")),
                   "results/equivalent_msaa_is_upper_bound", "results/visibility/equivalent_msaa_is_upper_bound",
                   "results/visibility/equivalent_msaa_low", "results/visibility/equivalent_msaa_high",  # so small a picture has no
                   "results/equivalent_msaa_does_not_converge", "results/visibility/equivalent_msaa_does_not_converge"}),

@@ -127,6 +127,8 @@ TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
   noted.notes = {{"stencil test", true, 2, 34}};
   EXPECT_EQ(report_json(noted)["notes"].at(0),
             (Json{{"reason", "stencil test"}, {"left_out", true}, {"draws", 2}, {"triangles", 34}}));
+  noted.notes = {{"stopped", false, 2, 34, 567}};
+  EXPECT_EQ(report_json(noted)["notes"].at(0).at("invocations"), 567);
   EXPECT_FALSE(json["results"][0].contains("error"));
   EXPECT_FALSE(json["results"][0].contains("equivalent_msaa"));
   EXPECT_FALSE(json["results"][0].contains("equivalent_msaa_is_lower_bound"));
