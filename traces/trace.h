@@ -59,8 +59,9 @@ struct Draw {
   std::optional<ProgramUse> program{};  // a shader of its own; not with kd or material, and in place of the mesh's
 };
 
-// What is stored of a shader's output: its code as sRGB, or the number itself.
-enum class ColorTarget { srgb, unorm };
+// What is stored of a shader's output: its code as sRGB; the number itself, 0..1; or any number, which is a linear
+// colour.
+enum class ColorTarget { srgb, unorm, floats };
 
 // A pinhole camera. Lengths in scene units, 0 < near < far; fovy is the full vertical angle, in degrees, 0 < fovy <
 // 180.

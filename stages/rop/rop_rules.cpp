@@ -51,7 +51,8 @@ bool RopRule::writes_color() const {
 RopRules::RopRules(const Trace& trace, const Frame& frame, const glm::vec3& background)
     : clear_depth(window_clear_depth(trace, frame) - 1),
       clear_color(background, frame.background_alpha),
-      limits_color(std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.program.has_value(); })) {
+      limits_color(frame.target != ColorTarget::floats &&
+                   std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.program.has_value(); })) {
   draws.reserve(frame.draws.size());
   for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
     const Draw& draw = frame.draws[i];

@@ -51,7 +51,8 @@ struct RopRules {
   std::vector<RopClear> clears;               // in the order of draws
   float clear_depth = 0;                      // of the frame
   glm::vec4 clear_color{0.0f, 0.0f, 0.0f, 1.0f};
-  bool limits_color = false;  // to 0..1, as targets of fixed point do: where all draws have programs
+  // To 0..1, as targets of fixed point do: where all draws have programs, unless the target stores floats.
+  bool limits_color = false;
 
   // `background`: as the frame's target stores it. Materials that are blended, in draws without a blend function, are
   // put over what is stored and do not write depth.

@@ -17,6 +17,7 @@ constexpr std::size_t kGroup = 4;  // lanes
 
 // What is not a number is 0.
 float limited(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
+float stored_float(float value) { return std::isnan(value) ? 0.0f : std::clamp(value, -kMostColor, kMostColor); }
 
 // Weights at a point of the screen, in pixels.
 Barycentrics<float> weights_of(const SetupSurface& surface, float x, float y) {
@@ -290,10 +291,13 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
     for (std::size_t lane = 0; lane < kShaderLanes; ++lane) {
       if (place_of[lane] == Group::kNone) continue;
       const auto channel = [&](std::size_t c, float otherwise) {
-        return draw.outputs[c] == kNoRow ? otherwise : limited(executor.row(draw.outputs[c]).number(lane));
+        if (draw.outputs[c] == kNoRow) return otherwise;
+        const float value = executor.row(draw.outputs[c]).number(lane);
+        const bool is_opacity = c == 3 && triangles_.order == DrawOrder::by_depth;
+        return frame_.target == ColorTarget::floats && !is_opacity ? stored_float(value) : limited(value);
       };
       const bool is_there = kept >> lane & 1;
-      const float alpha = draw.has_alpha ? channel(3, 1.0f) : 1.0f;
+      const float alpha = draw.has_alpha ? std::max(channel(3, 1.0f), 0.0f) : 1.0f;
       colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : kDiscarded};
       if (!verdicts) continue;
       FragmentVerdict& verdict = verdicts[place_of[lane]];

@@ -9,8 +9,8 @@
 // above 16 samples, they are per cell: as in a picture of that resolution.
 //
 // Built-in inputs: FragCoord, FrontFacing, HelperInvocation and PrimitiveId; PointCoord is the middle of the point,
-// SampleMask has all bits, and all others are 0. Of the outputs, the colour at location 0 is used, clamped to 0..1; and
-// FragDepth and SampleMask.
+// SampleMask has all bits, and all others are 0. Of the outputs, the colour at location 0 is used, limited to 0..1
+// unless the target stores floats, and to alphas of 0 and more; and FragDepth and SampleMask.
 #pragma once
 
 #include <array>

@@ -355,7 +355,7 @@ const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) 
 }
 
 glm::vec3 SurfaceShader::stored_color(const glm::vec3& linear) const {
-  if (frame_.target == ColorTarget::srgb) return linear;
+  if (frame_.target != ColorTarget::unorm) return linear;
   glm::vec3 stored;
   for (int c = 0; c < 3; ++c) stored[c] = static_cast<float>(encoded_as_srgb(linear[c]));
   return stored;

@@ -269,7 +269,7 @@ class States(unittest.TestCase):
     API = {"viewport": [0, 32, 64, -32], "depth_range": [0, 1], "scissor": None, "depth_test": True, "depth_write": True,
            "depth_function": "Less", "bias": 0, "slope_bias": 0, "bias_clamp": 0, "depth_format": "D24",
            "depth_clamp": False, "cull": "NoCull", "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None,
-           "alpha_to_coverage": False}
+           "alpha_to_coverage": False, "logic_operation": None}
 
     def of(self, **changes):
         return state.state_of({**self.API, **changes}, 64, 32)
@@ -302,6 +302,13 @@ class States(unittest.TestCase):
         self.assertEqual((constant["source"], constant["constant"]), ("constant", [0, 0.5, 1, 1]))
         with self.assertRaises(ValueError):
             of({"source": "Src1Col", "destination": "Zero", "operation": "Add"}, replace)
+
+    def test_logic_operations_replace_blending(self):
+        mix = {"source": "SrcAlpha", "destination": "InvSrcAlpha", "operation": "Add"}
+        blend = {"color": mix, "alpha": mix, "constant": [0, 0, 0, 0]}
+        self.assertEqual(self.of(blend=blend, logic_operation="Copy"), {})
+        with self.assertRaisesRegex(ValueError, "^logic operation Xor$"):
+            self.of(logic_operation="Xor")
 
     def test_masks_and_faces(self):
         self.assertEqual(self.of(color_mask=7, front_ccw=False), {"color_mask": "rgb", "front_face": "clockwise"})
@@ -459,6 +466,11 @@ class Frames(unittest.TestCase):
         self.assertEqual([draw.state for draw in found.draws], [{"clears_stencil": 3}, {}])
         self.assertAlmostEqual(found.background_alpha, 0.2)
         self.assertEqual((found.background, found.clear_depth), ([0, 0, 0], 0.5))
+
+    def test_the_target_is_that_of_its_format(self):
+        for color_format, target in (("R8G8B8A8_UNORM", "unorm"), ("B8G8R8A8_SRGB", "srgb"),
+                                     ("R16G16B16A16_FLOAT", "float"), ("R11G11B10_FLOAT", "float")):
+            self.assertEqual(self.frame({}, 1, color_format=color_format).target, target)
 
     def test_a_target_without_alpha_does_not_write_it(self):
         found = self.frame({}, 1, color_format="R5G6B5_UNORM")

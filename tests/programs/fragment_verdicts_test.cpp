@@ -114,7 +114,7 @@ struct Scene : ProgramTrace {
     SCOPED_TRACE(spec);
     const ProgramSet programs(trace);
     for (std::uint32_t i = 0; i < trace.programs.size(); ++i) ASSERT_EQ(programs.error(i), "");
-    const std::vector<glm::vec3> found = stored_picture(rendered(trace, spec));
+    const std::vector<glm::vec3> found = stored_picture(rendered(trace, spec), trace.frames[0].target);
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       const glm::vec3 wanted = expected(i % kSide);
       for (int c = 0; c < 3; ++c) {
@@ -337,6 +337,47 @@ TEST(FragmentVerdicts, AlphaOfMaterialsCovers) {
     EXPECT_NEAR(picture_of(AlphaMode::opaque, 0.5f, spec), 1, kRounding);
     EXPECT_NEAR(picture_of(AlphaMode::blend, 0.5f, spec), 0.25f, kRounding);
   }
+}
+
+// ---- Targets of floats ----
+
+Blend adds(BlendOperation operation) { return {{BlendFactor::one, BlendFactor::one, operation}, {}, {}}; }
+
+TEST(FragmentVerdicts, FloatsKeepColorsOfAnySize) {
+  for (const ColorTarget target : {ColorTarget::floats, ColorTarget::unorm}) {
+    const bool is_float = target == ColorTarget::floats;
+    Scene scene;
+    scene.trace.frames[0].target = target;
+    scene.add(kPlain, 0.25f, {3, 0.25f, 0, 1});
+    for (const char* spec : {"msaa:1", "msaa:4", "reference", "beam", "casav", "visibility"})
+      scene.expect(spec, [&](auto) { return glm::vec3(is_float ? 3 : 1, 0.25f, 0); });
+    // Half of it stays: 5 / 2 + 3 / 2 and 1 / 4 of green. Of what 0..1 holds, 1 stays 1.
+    Draw& blended = scene.add(kPlain, 0.125f, {5, 0.25f, 0, 0.5f});
+    blended.state.blend = Blend{};
+    for (const char* spec : {"msaa:1", "msaa:4", "reference", "beam"})
+      scene.expect(spec, [&](auto) { return glm::vec3(is_float ? 4 : 1, 0.25f, 0); });
+  }
+}
+
+// 5 taken from 3 is -2, and 2.5 more is 1/2. Limited to 0..1, it is 0 and then 1.
+TEST(FragmentVerdicts, FloatsAreNotLimitedBetweenDraws) {
+  for (const ColorTarget target : {ColorTarget::floats, ColorTarget::unorm}) {
+    Scene scene;
+    scene.trace.frames[0].target = target;
+    scene.add(kPlain, 0.75f, {3, 0, 0, 1});
+    scene.add(kPlain, 0.5f, {5, 0, 0, 1}).state.blend = adds(BlendOperation::reverse_subtract);
+    scene.add(kPlain, 0.25f, {2.5f, 0, 0, 1}).state.blend = adds(BlendOperation::add);
+    scene.expect_all(glm::vec3(target == ColorTarget::floats ? 0.5f : 1.0f, 0, 0));
+  }
+}
+
+// Factors are alphas as they are: 2 times 1/4, and -1 times the 3 that was there.
+TEST(FragmentVerdicts, AlphaOfFloatsIsNotLimited) {
+  Scene scene;
+  scene.trace.frames[0].target = ColorTarget::floats;
+  scene.add(kPlain, 0.75f, {3, 4, 0, 1});
+  scene.add(kPlain, 0.5f, {0.25f, 8, 0, 2}).state.blend = Blend{};
+  scene.expect_all(glm::vec3(-2.5f, 12, 0));
 }
 
 // ---- Notes ----

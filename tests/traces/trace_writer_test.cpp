@@ -285,7 +285,7 @@ Trace random_programs(unsigned seed) {
     for (std::size_t i = 0; i < varyings_of(trace.programs[0]) * mesh.positions.size(); ++i)
       mesh.varyings.push_back(are_numbers ? std::bit_cast<std::uint32_t>(number()) : word());
   Frame& frame = trace.frames[0];
-  frame.target = ColorTarget(below(2));
+  frame.target = ColorTarget(below(3));
   for (Draw& draw : frame.draws) {
     if (draw.kd || draw.material) continue;
     ProgramUse& use = draw.program.emplace();

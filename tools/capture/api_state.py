@@ -32,6 +32,7 @@ def read_state(controller, depth_format):
         "front_ccw": raster.frontCCW, "cull": raster.cullMode.name, "fill": raster.fillMode.name,
         # OpenGL has it without multisampling, too, where it does nothing.
         "alpha_to_coverage": vulkan.colorBlend.alphaToCoverageEnable and vulkan.multisample.rasterSamples > 1,
+        "logic_operation": blend.logicOperation.name if blend and blend.logicOperationEnabled else None,
         "color_mask": blend.writeMask if blend else 0,
         "blend": {"color": _equation(blend.colorBlend), "alpha": _equation(blend.alphaBlend),
                   "constant": list(vulkan.colorBlend.blendFactor)} if blend and blend.enabled else None,

@@ -27,14 +27,15 @@ class Draw:
 
 class Frame:
     """`color`: height x width x 3, 0..1, codes as a picture shows them; `depth`: height x width window depths or None;
-    `target`: "srgb" if codes are sRGB-encoded as they are stored, "unorm" if shaders write the codes."""
+    `target`: "srgb" if codes are sRGB-encoded as they are stored, "unorm" if shaders write the codes, "float" if they
+    write linear colours of any size."""
 
     def __init__(self, pictures, found):
         self.width, self.height = pictures["size"]
         self.samples = pictures["samples"]
         self.later_draws = pictures["later_draws"]
         is_float = "FLOAT" in pictures["color_format"]
-        self.target = "srgb" if is_float or "SRGB" in pictures["color_format"] else "unorm"
+        self.target = "float" if is_float else "srgb" if "SRGB" in pictures["color_format"] else "unorm"
         encoded = lambda picture: None if picture is None else np.clip(
             srgb.from_linear(picture[..., :3]) if is_float else picture[..., :3], 0, 1)
         self.color, self.color_before = encoded(pictures["color"]), encoded(pictures["color_before"])

@@ -62,7 +62,7 @@ def blend_of(blend):
 
 def state_of(api, width, height, has_alpha=True):
     """A draw's state from `api`, what api_state.py has read, on a target of width x height pixels. What equals the
-    trace format's default is left out."""
+    trace format's default is left out. ValueError if the format has no words for it."""
     state = {}
     viewport = picture_viewport(*api["viewport"])
     if viewport != [0, 0, width, height]:
@@ -88,7 +88,9 @@ def state_of(api, width, height, has_alpha=True):
     # Vulkan's formula for areas has the sign for y down: it means what one sees in the picture.
     if not api["front_ccw"]:
         state["front_face"] = "clockwise"
-    if api["blend"]:
+    if api["logic_operation"] not in (None, "Copy"):
+        raise ValueError(f"logic operation {api['logic_operation']}")
+    if api["blend"] and not api["logic_operation"]:
         blend = blend_of(api["blend"])
         if blend:
             state["blend"] = blend

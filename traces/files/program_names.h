@@ -13,7 +13,7 @@ inline constexpr std::string_view kTexelFormatNames[] = {
     "R32_SFLOAT",    "R32G32B32A32_SFLOAT", "R32G32B32A32_UINT", "R32G32B32A32_SINT",   "D32_SFLOAT"};
 inline constexpr std::string_view kSamplerWrapNames[] = {"repeat", "mirror", "clamp_to_edge", "clamp_to_border",
                                                          "mirror_clamp"};
-inline constexpr std::string_view kColorTargetNames[] = {"srgb", "unorm"};
+inline constexpr std::string_view kColorTargetNames[] = {"srgb", "unorm", "float"};
 inline constexpr std::string_view kSwizzleLetters = "rgba01";
 
 }  // namespace beampipe

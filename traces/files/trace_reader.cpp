@@ -369,7 +369,7 @@ Form<Frame> frame_form(const Reader& reader) {
                    "What blend functions read of the destination's alpha where nothing is drawn.");
     frame.optional("target", &Frame::target, color_target_form(),
                    "What is stored of what programs' shaders return: srgb: its code as sRGB; unorm: the number itself, "
-                   "which is the picture's code divided by 255.");
+                   "which is the picture's code divided by 255; float: any number, as linear colour.");
     add_capture(frame, reader.trace.images, reader.images, reader.arrays);
   }
   return frame.check(

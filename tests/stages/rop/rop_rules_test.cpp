@@ -152,6 +152,8 @@ TEST(RopRules, ColorsAreLimitedWhereAllDrawsHavePrograms) {
   EXPECT_FALSE(draws.rules().limits_color);
   draws.frame.draws[1].program.emplace();
   EXPECT_TRUE(draws.rules().limits_color);
+  draws.frame.target = ColorTarget::floats;
+  EXPECT_FALSE(draws.rules().limits_color);
 }
 
 }  // namespace beampipe::rop_rules_test

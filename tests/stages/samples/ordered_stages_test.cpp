@@ -64,6 +64,17 @@ TEST(OrderedTest, TestsAndWritesDrawByDraw) {
   EXPECT_EQ(found.accesses[3].written, 0u);
 }
 
+TEST(OrderedTest, AFragmentMayHaveADepthOfItsOwn) {
+  Draws draws;
+  draws.add(-0.5f), draws.add(-0.25f, 1), draws.add(-0.75f, 2);
+  draws.fragments[1].depth = -0.625f;  // in front of the first one
+  draws.fragments[2].depth = -0.375f;  // behind it
+  const Tested found(draws);
+  ASSERT_EQ(found.left.size(), 2u);
+  EXPECT_EQ(found.left[1].triangle, 1u);
+  EXPECT_EQ(found.surface.depth, (std::vector<float>{0, 0, -0.625f, -0.5f}));
+}
+
 TEST(OrderedTest, CountsItsWork) {
   Draws draws;
   draws.add(-0.5f), draws.add(-0.25f);
