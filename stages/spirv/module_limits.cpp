@@ -206,7 +206,7 @@ std::uint64_t ways(spv::Op op, Operands operands) {
 void check_module(std::span<const std::uint32_t> words) {
   TypeParts types(TypeParts::kOneElement);
   std::unordered_map<std::uint32_t, std::uint64_t> decorations;  // by what they decorate
-  std::uint64_t blocks = 0, parts = 0, group_decorations = 0;
+  std::uint64_t blocks = 0, parts = 0, built_ins = 0, group_decorations = 0;
   for_each_instruction(words, [&](spv::Op op, Operands operands) {
     blocks += op == spv::OpLabel;
     require_at_most(ModuleLimits::kBlocks, blocks, "blocks");
@@ -214,6 +214,9 @@ void check_module(std::span<const std::uint32_t> words) {
     require_at_most(ModuleLimits::kParts, parts, "parts of types and values");
     if (operands.empty()) return;
     if (op == spv::OpDecorate) ++decorations[operands[0]];
+    const std::size_t decoration = op == spv::OpDecorate ? 1 : op == spv::OpMemberDecorate ? 2 : operands.size();
+    built_ins += decoration < operands.size() && operands[decoration] == spv::DecorationBuiltIn;
+    require_at_most(ModuleLimits::kBuiltIns, built_ins, "decorations of built-in variables");
     if (op == spv::OpGroupDecorate || op == spv::OpGroupMemberDecorate)
       group_decorations += decorations[operands[0]] * operands.size();
     require_at_most(ModuleLimits::kGroupDecorations, group_decorations, "decorations by groups");

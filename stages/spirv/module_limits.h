@@ -18,6 +18,7 @@ struct ModuleLimits {
   static constexpr std::uint64_t kBlocks = 4096;
   // Parts of types and of values, each with the parts of its parts.
   static constexpr std::uint64_t kParts = 1u << 20;
+  static constexpr std::uint64_t kBuiltIns = 256;               // decorations
   static constexpr std::uint64_t kGroupDecorations = 1u << 16;  // decorations of groups, for each member
   // After all functions are inlined.
   static constexpr std::uint64_t kInlinedWords = 1u << 17;
@@ -27,7 +28,7 @@ struct ModuleLimits {
 
 // All throw ShaderError.
 
-// Before validation: of any words. Blocks, parts of types where arrays count as one element, decorations.
+// Before validation: of any words. Blocks, parts of types and values where arrays count as one element, decorations.
 void check_module(std::span<const std::uint32_t> words);
 
 // Before inlining: of a valid module without specialization constants. Functions must not call themselves; words,

@@ -1,5 +1,6 @@
 // Modules that are valid, and that would take SPIRV-Tools or the decoder minutes, all memory or the whole stack.
 #include "stages/spirv/module.h"
+#include "stages/spirv/module_words.h"
 #include "tests/message_of.h"
 #include "tests/stages/spirv/shader_text.h"
 
@@ -154,6 +155,26 @@ OpStore %iout %r
                                  chained("%a# = OpTypeArray %a@ %hundred\n", 1, 4) +
                                  "%to_a3 = OpTypePointer Function %a3\n%to_uint = OpTypePointer Function %uint\n"}),
             "expected at most 1048576 parts of values of a function, with those that it calls");
+}
+
+TEST(SpirvLimits, BuiltInVariables) {
+  EXPECT_EQ(error_of({.body = "",
+                      .globals = repeated("%coord# = OpVariable %in_v4 Input\n", 0, 5000),
+                      .decorations = repeated("OpDecorate %coord# BuiltIn FragCoord\n", 0, 5000)}),
+            "expected at most 256 decorations of built-in variables");
+}
+
+// Each is validated with all functions.
+TEST(SpirvLimits, EntryPoints) {
+  std::vector<std::uint32_t> words = assembled(shader_text(chain_of_calls(1000)));
+  std::size_t at = kModuleHeaderWords;
+  while ((words[at] & 0xffffu) != spv::OpEntryPoint) at += words[at] >> 16;
+  const std::vector<std::uint32_t> entry(words.begin() + static_cast<std::ptrdiff_t>(at),
+                                         words.begin() + static_cast<std::ptrdiff_t>(at + (words[at] >> 16)));
+  for (int i = 0; i < 10000; ++i)
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), entry.begin(), entry.end());
+  EXPECT_EQ(message_of<ShaderError>([&] { load_fragment_shader(words); }),
+            "expected a module with one entry point, a fragment shader's");
 }
 
 // A group has 1000 decorations and 1000 members.
