@@ -121,7 +121,7 @@ class Inlining {
     function.state = Function::State::open;
     function.sizes.check();
     for (const std::uint32_t called : function.calls) {
-      function.sizes += visit(functions_[called]);
+      function.sizes += visit(functions_.at(called));
       function.sizes.check();
     }
     function.state = Function::State::known;
@@ -230,7 +230,7 @@ void check_values(std::span<const std::uint32_t> words) {
   Origins origins;
   std::unordered_map<std::uint32_t, std::uint64_t> stores;  // by variable
   std::unordered_map<std::uint32_t, std::uint64_t> parts;
-  std::uint64_t all_ways = 0;
+  std::uint64_t all_ways = 0, blocks = 0, values = 0;
   for_each_instruction(words, [&](spv::Op op, Operands operands) {
     const std::uint64_t here = types.add(op, operands);
     if (op == spv::OpVariable && (operands[2] == spv::StorageClassFunction || operands[2] == spv::StorageClassPrivate))
@@ -238,7 +238,10 @@ void check_values(std::span<const std::uint32_t> words) {
     origins.add(op, operands);
     if (op == spv::OpStore || op == spv::OpCopyMemory) ++stores[origins.variable_of(operands[0])];
     all_ways += ways(op, operands);
+    blocks += op == spv::OpLabel;
+    values += blocks > 0;
   });
+  require_at_most(ModuleLimits::kBlockValues, blocks * values, "blocks times instructions");
   // A variable that is stored to once needs no phis; others may need one in each block, with an operand for each way.
   std::uint64_t changing = 0;
   for (const auto& [variable, count] : stores)

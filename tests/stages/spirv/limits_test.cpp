@@ -195,11 +195,11 @@ ShaderParts switch_with(int cases) {
 }
 
 TEST(SpirvLimits, LongSwitches) {
-  TestShader shader(switch_with(4000));
-  shader.set_integer(3, 0, 5, 3999), shader.set_integer(3, 0, 6, 4000);
+  TestShader shader(switch_with(2000));
+  shader.set_integer(3, 0, 5, 1999), shader.set_integer(3, 0, 6, 2000);
   shader.run();
   EXPECT_EQ(shader.integer(0, 4), 10u);
-  EXPECT_EQ(shader.integer(0, 5), 13999u);
+  EXPECT_EQ(shader.integer(0, 5), 11999u);
   EXPECT_EQ(shader.integer(0, 6), 0u);  // there is no such case
   EXPECT_EQ(error_of(switch_with(10000)), "expected at most 4096 blocks");
 }
@@ -216,6 +216,19 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                               "%r = OpCompositeConstruct %u4 %sum999 %sum999 %sum999 %sum999\nOpStore %iout %r\n",
                       .globals = "%to_uint = OpTypePointer Function %uint\n"}),
             "expected at most 524288 ways between blocks, times variables that change");
+}
+
+// Values that the optimizer keeps for each of 3000 blocks.
+TEST(SpirvLimits, ValuesInManyBlocks) {
+  EXPECT_EQ(
+      error_of(
+          {.body = "%x = OpCompositeExtract %uint %vi 0\n%yes = OpINotEqual %bool %x %u0\n%y0 = OpIAdd %uint %x %u1\n" +
+                   chained("%y# = OpIAdd %uint %y@ %x\n", 1, 10000) +
+                   repeated("OpSelectionMerge %after# None\nOpBranchConditional %yes %inside# %after#\n"
+                            "%inside# = OpLabel\nOpStore %iout %vi\nOpBranch %after#\n%after# = OpLabel\n",
+                            0, 1500) +
+                   "%r = OpCompositeConstruct %u4 %y9999 %x %x %x\nOpStore %iout %r\n"}),
+      "expected at most 33554432 blocks times instructions");
 }
 
 TEST(SpirvLimits, ChainsOfPointersAndComposites) {
