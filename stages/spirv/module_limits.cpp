@@ -121,7 +121,7 @@ class Inlining {
     function.state = Function::State::open;
     function.sizes.check();
     for (const std::uint32_t called : function.calls) {
-      function.sizes += visit(functions_[called]);
+      function.sizes += visit(functions_.at(called));
       function.sizes.check();
     }
     function.state = Function::State::known;
@@ -206,7 +206,7 @@ std::uint64_t ways(spv::Op op, Operands operands) {
 void check_module(std::span<const std::uint32_t> words) {
   TypeParts types(TypeParts::kOneElement);
   std::unordered_map<std::uint32_t, std::uint64_t> decorations;  // by what they decorate
-  std::uint64_t blocks = 0, parts = 0, group_decorations = 0;
+  std::uint64_t blocks = 0, parts = 0, built_ins = 0, group_decorations = 0;
   for_each_instruction(words, [&](spv::Op op, Operands operands) {
     blocks += op == spv::OpLabel;
     require_at_most(ModuleLimits::kBlocks, blocks, "blocks");
@@ -214,6 +214,9 @@ void check_module(std::span<const std::uint32_t> words) {
     require_at_most(ModuleLimits::kParts, parts, "parts of types and values");
     if (operands.empty()) return;
     if (op == spv::OpDecorate) ++decorations[operands[0]];
+    const std::size_t decoration = op == spv::OpDecorate ? 1 : op == spv::OpMemberDecorate ? 2 : operands.size();
+    built_ins += decoration < operands.size() && operands[decoration] == spv::DecorationBuiltIn;
+    require_at_most(ModuleLimits::kBuiltIns, built_ins, "decorations of built-in variables");
     if (op == spv::OpGroupDecorate || op == spv::OpGroupMemberDecorate)
       group_decorations += decorations[operands[0]] * operands.size();
     require_at_most(ModuleLimits::kGroupDecorations, group_decorations, "decorations by groups");
@@ -227,7 +230,7 @@ void check_values(std::span<const std::uint32_t> words) {
   Origins origins;
   std::unordered_map<std::uint32_t, std::uint64_t> stores;  // by variable
   std::unordered_map<std::uint32_t, std::uint64_t> parts;
-  std::uint64_t all_ways = 0;
+  std::uint64_t all_ways = 0, blocks = 0, values = 0;
   for_each_instruction(words, [&](spv::Op op, Operands operands) {
     const std::uint64_t here = types.add(op, operands);
     if (op == spv::OpVariable && (operands[2] == spv::StorageClassFunction || operands[2] == spv::StorageClassPrivate))
@@ -235,7 +238,10 @@ void check_values(std::span<const std::uint32_t> words) {
     origins.add(op, operands);
     if (op == spv::OpStore || op == spv::OpCopyMemory) ++stores[origins.variable_of(operands[0])];
     all_ways += ways(op, operands);
+    blocks += op == spv::OpLabel;
+    values += blocks > 0;
   });
+  require_at_most(ModuleLimits::kBlockValues, blocks * values, "blocks times instructions");
   // A variable that is stored to once needs no phis; others may need one in each block, with an operand for each way.
   std::uint64_t changing = 0;
   for (const auto& [variable, count] : stores)

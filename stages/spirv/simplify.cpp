@@ -31,6 +31,24 @@ class FirstMessage {
   std::string text_;
 };
 
+// Of any words.
+void require_fragment_shader(std::span<const std::uint32_t> words) {
+  std::size_t entries = 0;
+  bool is_fragment = false, has_shader = false;
+  for_each_instruction(words, [&](spv::Op op, std::span<const std::uint32_t> operands) {
+    const std::uint32_t first = operands.empty() ? ~0u : operands[0];
+    if (op == spv::OpCapability) {
+      has_shader |= first == spv::CapabilityShader;
+      if (first == spv::CapabilityKernel) throw ShaderError("expected a shader, found an OpenCL kernel");
+    }
+    if (op != spv::OpEntryPoint) return;
+    ++entries;
+    is_fragment = first == spv::ExecutionModelFragment;
+  });
+  if (!has_shader || entries != 1 || !is_fragment)
+    throw ShaderError("expected a module with one entry point, a fragment shader's");
+}
+
 void validate(std::span<const std::uint32_t> words) {
   FirstMessage message;
   spvtools::SpirvTools tools(kEnvironment);
@@ -41,22 +59,6 @@ void validate(std::span<const std::uint32_t> words) {
   options.SetUniversalLimit(spv_validator_limit_max_control_flow_nesting_depth, ModuleLimits::kNesting);
   options.SetUniversalLimit(spv_validator_limit_max_struct_depth, 32);
   if (!tools.Validate(words.data(), words.size(), options)) throw ShaderError("invalid SPIR-V: " + message.text());
-}
-
-void require_fragment_shader(std::span<const std::uint32_t> words) {
-  std::size_t entries = 0;
-  bool is_fragment = false, has_shader = false;
-  for_each_instruction(words, [&](spv::Op op, std::span<const std::uint32_t> operands) {
-    if (op == spv::OpCapability) {
-      has_shader |= operands[0] == spv::CapabilityShader;
-      if (operands[0] == spv::CapabilityKernel) throw ShaderError("expected a shader, found an OpenCL kernel");
-    }
-    if (op != spv::OpEntryPoint) return;
-    ++entries;
-    is_fragment = operands[0] == spv::ExecutionModelFragment;
-  });
-  if (!has_shader || entries != 1 || !is_fragment)
-    throw ShaderError("expected a module with one entry point, a fragment shader's");
 }
 
 // Hints would make the optimizer leave functions as they are, which are then not supported; or repeat the bodies of
@@ -96,9 +98,9 @@ std::vector<std::uint32_t> simplify(std::span<const std::uint32_t> words, const 
                       std::to_string(words.size()));
   if (words.size() < kModuleHeaderWords || words[0] != spv::MagicNumber)
     throw ShaderError("expected SPIR-V in this machine's byte order");
+  require_fragment_shader(words);
   check_module(words);
   validate(words);
-  require_fragment_shader(words);
 
   std::vector<std::uint32_t> module(words.begin(), words.end());
   remove_hints(module);

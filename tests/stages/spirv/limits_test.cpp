@@ -1,5 +1,6 @@
 // Modules that are valid, and that would take SPIRV-Tools or the decoder minutes, all memory or the whole stack.
 #include "stages/spirv/module.h"
+#include "stages/spirv/module_words.h"
 #include "tests/message_of.h"
 #include "tests/stages/spirv/shader_text.h"
 
@@ -156,6 +157,26 @@ OpStore %iout %r
             "expected at most 1048576 parts of values of a function, with those that it calls");
 }
 
+TEST(SpirvLimits, BuiltInVariables) {
+  EXPECT_EQ(error_of({.body = "",
+                      .globals = repeated("%coord# = OpVariable %in_v4 Input\n", 0, 5000),
+                      .decorations = repeated("OpDecorate %coord# BuiltIn FragCoord\n", 0, 5000)}),
+            "expected at most 256 decorations of built-in variables");
+}
+
+// Each is validated with all functions.
+TEST(SpirvLimits, EntryPoints) {
+  std::vector<std::uint32_t> words = assembled(shader_text(chain_of_calls(1000)));
+  std::size_t at = kModuleHeaderWords;
+  while ((words[at] & 0xffffu) != spv::OpEntryPoint) at += words[at] >> 16;
+  const std::vector<std::uint32_t> entry(words.begin() + static_cast<std::ptrdiff_t>(at),
+                                         words.begin() + static_cast<std::ptrdiff_t>(at + (words[at] >> 16)));
+  for (int i = 0; i < 10000; ++i)
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), entry.begin(), entry.end());
+  EXPECT_EQ(message_of<ShaderError>([&] { load_fragment_shader(words); }),
+            "expected a module with one entry point, a fragment shader's");
+}
+
 // A group has 1000 decorations and 1000 members.
 TEST(SpirvLimits, DecorationsOfGroups) {
   EXPECT_EQ(error_of({.body = "",
@@ -174,11 +195,11 @@ ShaderParts switch_with(int cases) {
 }
 
 TEST(SpirvLimits, LongSwitches) {
-  TestShader shader(switch_with(4000));
-  shader.set_integer(3, 0, 5, 3999), shader.set_integer(3, 0, 6, 4000);
+  TestShader shader(switch_with(2000));
+  shader.set_integer(3, 0, 5, 1999), shader.set_integer(3, 0, 6, 2000);
   shader.run();
   EXPECT_EQ(shader.integer(0, 4), 10u);
-  EXPECT_EQ(shader.integer(0, 5), 13999u);
+  EXPECT_EQ(shader.integer(0, 5), 11999u);
   EXPECT_EQ(shader.integer(0, 6), 0u);  // there is no such case
   EXPECT_EQ(error_of(switch_with(10000)), "expected at most 4096 blocks");
 }
@@ -195,6 +216,19 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                               "%r = OpCompositeConstruct %u4 %sum999 %sum999 %sum999 %sum999\nOpStore %iout %r\n",
                       .globals = "%to_uint = OpTypePointer Function %uint\n"}),
             "expected at most 524288 ways between blocks, times variables that change");
+}
+
+// Values that the optimizer keeps for each of 3000 blocks.
+TEST(SpirvLimits, ValuesInManyBlocks) {
+  EXPECT_EQ(
+      error_of(
+          {.body = "%x = OpCompositeExtract %uint %vi 0\n%yes = OpINotEqual %bool %x %u0\n%y0 = OpIAdd %uint %x %u1\n" +
+                   chained("%y# = OpIAdd %uint %y@ %x\n", 1, 10000) +
+                   repeated("OpSelectionMerge %after# None\nOpBranchConditional %yes %inside# %after#\n"
+                            "%inside# = OpLabel\nOpStore %iout %vi\nOpBranch %after#\n%after# = OpLabel\n",
+                            0, 1500) +
+                   "%r = OpCompositeConstruct %u4 %y9999 %x %x %x\nOpStore %iout %r\n"}),
+      "expected at most 33554432 blocks times instructions");
 }
 
 TEST(SpirvLimits, ChainsOfPointersAndComposites) {
