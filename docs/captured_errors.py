@@ -4,9 +4,8 @@
 usage: docs/captured_errors.py PROGRAM FRAMES COMPARISONS
 
 PROGRAM is for instance beampipe. `beampipe compare FRAMES/NAME.json -t beam msaa:8 msaa:32 -o COMPARISONS/NAME` wrote
-the comparisons. Operations are those of all stages but vertex setup and shading, which are the same work for all, per
-pixel and layer; a layer is a pixel that a triangle covers at least in part. Bytes are those of DRAM. Times are modelled
-with the fixed functions of a Titan V. Shading is charged what the programs execute.
+the comparisons. Operations are those of all stages but vertex setup, alpha tests and shading. Bytes are those of DRAM.
+Times are modelled with the fixed functions of a Titan V; shading is charged what the programs execute.
 """
 import json
 import pathlib
