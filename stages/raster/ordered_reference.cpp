@@ -100,8 +100,7 @@ class OrderedSamples {
       for (std::size_t i = 0; i < run.count; ++i) cells.push_back(static_cast<std::uint32_t>(first + i));
     });
     std::ranges::sort(cells);
-    const auto repeated = std::ranges::unique(cells);
-    cells.erase(repeated.begin(), repeated.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     invocations_.clear();
     for (const std::uint32_t cell : cells) invocations_.push_back(invocation(index, cell));
     const std::vector<FragmentVerdict> found = shader_.verdicts(index, invocations_);
