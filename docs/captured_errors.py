@@ -16,7 +16,7 @@ import measure
 from errors import emr
 
 SPECS = ("beam", "msaa:8", "msaa:32")
-SHADING = {"vertex_setup", "shade", "alpha_test"}
+SHADING = {"vertex_setup", "shade", "alpha_test", "alpha_mask"}
 
 
 def listed(numbers, form):

@@ -190,7 +190,6 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_z3_cost.h|layers * (layers - 1) / 2|layers * layers / 2'
   'stages/cost/closed_depth_cost.h|work.changes + 2 * work.refreshed_pixels|work.changes + work.refreshed_pixels'
   'stages/geometry/depth_order.cpp|left > done ? Part::behind|left >= done ? Part::behind'
-  'stages/rop/rop_rules.cpp|greater > less ? 0.0f|greater >= less ? 0.0f'
   'stages/geometry/depth_order.cpp|passes_equal(depth.function) && depth.bias == DepthBias{}|passes_equal(depth.function)'
   'stages/geometry/depth_order.cpp|if (may_be_cut_out(trace_, frame_.draws[i])) continue;|'
   'stages/geometry/depth_order.cpp|if (!acts_as_writer(draw))|if (!acts_as_writer(draw) && opaque_left > 0)'

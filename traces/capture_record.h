@@ -1,4 +1,5 @@
-// What a trace that was captured from a program says about its origin. Nothing of it changes what is drawn.
+// What a trace that was captured from a program says about its origin. Of this, only clear_depth and samples change what
+// is drawn.
 #pragma once
 
 #include <cstdint>

@@ -9,8 +9,8 @@
 // positions and of its area that is its opacity (stages/surface/opacity.h).
 //
 // In the API's order, shaders say more (FragmentVerdict): which positions are left, which part of them and of the area,
-// and the depth of the whole fragment. If a shader asks for early tests, what it takes away becomes a fragment of its
-// own, which is tested and has no colour.
+// and the depth of the whole fragment. If a shader asks for early tests, the positions that it takes away become a
+// fragment of its own, which is tested and has no colour.
 #pragma once
 
 #include <vector>

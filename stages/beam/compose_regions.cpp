@@ -53,6 +53,32 @@ class RegionComposer {
     bin_.rules.clear_before(draw, pixels_.next_clear, [this](const RopClear& what) { clear(what); });
     start(bin_.rules.of(bin_.triangles, fragment.triangle), bin_.triangles.triangles[fragment.triangle]);
     writes_color_ = rule_->writes_color() && !fragment.is_discarded;
+    if (is_limited(fragment.plane)) return take(with_limited_depth(fragment), draw, color);
+    return take(fragment, draw, color);
+  }
+
+  // After the last fragment.
+  void finish() {
+    for (RegionPixel& pixel : pixels_.pixels) add_specks(pixel);
+  }
+
+  RegionsWork work;
+
+ private:
+  // Draws that are not clipped limit depths to their own range, here by the pixel's centre.
+  bool is_limited(const DepthPlane<float>& plane) const {
+    const double depth = plane.z;
+    return (rule_->nearest > -1 && depth < rule_->nearest) || (rule_->farthest < 0 && depth > rule_->farthest);
+  }
+
+  Fragment with_limited_depth(Fragment fragment) const {
+    fragment.plane = {
+        std::clamp(fragment.plane.z, static_cast<float>(rule_->nearest), static_cast<float>(rule_->farthest)), 0.0f,
+        0.0f};
+    return fragment;
+  }
+
+  bool take(const Fragment& fragment, std::uint32_t draw, const glm::vec4& color) {
     look_at(fragment, draw);
     if (fragment.mask.none()) return wait(fragment, color);
     meet(fragment);
@@ -65,14 +91,6 @@ class RegionComposer {
     return needs_color_;
   }
 
-  // After the last fragment.
-  void finish() {
-    for (RegionPixel& pixel : pixels_.pixels) add_specks(pixel);
-  }
-
-  RegionsWork work;
-
- private:
   // ---- The draw's state ----
 
   void start(const RopRule& rule, const SetupTriangle& triangle) {

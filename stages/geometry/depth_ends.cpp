@@ -53,7 +53,9 @@ class WindowDepths {
     const double slope = std::max(std::abs(a.z * b.y - a.y * b.z), std::abs(a.x * b.z - a.z * b.x)) / std::abs(area);
     const double bias = double{depth_.bias.constant} + double{depth_.bias.slope} * slope;
     const auto [least, most] = std::minmax({p[0].z, p[1].z, p[2].z});
-    return least + bias <= kNear || most + bias >= 1 - kNear;
+    const double first = depth_.clip ? 0.0 : double{std::min(depth_.near, depth_.far)};
+    const double last = depth_.clip ? 1.0 : double{std::max(depth_.near, depth_.far)};
+    return least + bias <= first + kNear || most + bias >= last - kNear;
   }
 
   const DepthState& depth_;

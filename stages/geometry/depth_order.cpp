@@ -162,6 +162,8 @@ class DepthOrder {
         if (!acts_as_writer(draw)) note(draw, "depth is tested but not written");
       } else if (opaque_left > 0) {
         note(draw, "translucent, before opaque draws");
+      } else if (wins_ties(depth.function)) {
+        note(draw, "translucent, and visible where it is as far as what lies behind");
       }
     }
   }
@@ -199,7 +201,7 @@ class DepthOrder {
       if (!writes_color(frame_.draws[i].state) && writes_depth(depth_of(i))) note_pre_pass(i);
       if (may_be_cut_out(trace_, frame_.draws[i])) continue;
       repeats_earlier_[i] = written.contains(geometry_[i]);
-      if (writes_depth(depth_of(i))) written.insert(geometry_[i]);
+      if (writes_depth(depth_of(i)) && is_opaque(i)) written.insert(geometry_[i]);
     }
   }
 

@@ -43,7 +43,10 @@ struct PlaceOrder {
       const DepthState& depth = draw.state.depth;
       return std::tuple(depth.near, depth.far, depth.bias.constant, depth.bias.slope, depth.bias.clamp, depth.clip,
                         viewport.x, viewport.y, viewport.width, viewport.height, has_scissor, scissor.x, scissor.y,
-                        scissor.width, scissor.height);
+                        scissor.width, scissor.height, draw.cull, draw.state.front_is_clockwise,
+                        // Materials may be single-sided.
+                        draw.kd || draw.program ? kNoMaterial : draw.material.value_or(kNoMaterial),
+                        draw.kd || draw.program);
     };
     return rest(one) < rest(other) ? -1 : rest(other) < rest(one) ? 1 : 0;
   }

@@ -9,8 +9,8 @@
 namespace beampipe {
 
 // One number per draw of the frame. Two draws have the same number if their meshes have the same positions and
-// triangles, and their transforms, viewports, scissors, depth ranges, biases and clipping are the same. The time is
-// almost linear in the size of the draws' meshes.
+// triangles, and their transforms, viewports, scissors, depth ranges, biases and clipping are the same, and
+// what decides which faces are drawn. The time is almost linear in the size of the draws' meshes.
 std::vector<std::uint32_t> geometry_numbers(const Trace& trace, const Frame& frame);
 
 }  // namespace beampipe

@@ -157,7 +157,12 @@ bool needs_api_order(const Trace& trace, const Frame& frame) {
   const auto is_blended = [&](const Draw& draw) {
     return draw.state.blend && !replaces(*draw.state.blend) && is_translucent(trace, draw);
   };
-  return std::ranges::any_of(frame.draws, is_blended) || !plan_draws(trace, frame).notes.empty();
+  if (std::ranges::any_of(frame.draws, is_blended)) return true;
+  const DrawPlan plan = plan_draws(trace, frame);
+  const auto is_coarse = [](const DrawPlacement& placement) {
+    return placement.is_drawn && placement.layer_step == 0 && std::abs(placement.window_scale) < 1;
+  };
+  return !plan.notes.empty() || std::ranges::any_of(plan.placements, is_coarse);
 }
 
 }  // namespace beampipe

@@ -30,8 +30,9 @@ struct DrawPlan {
 DrawPlan plan_draws(const Trace& trace, const Frame& frame, DrawOrder order = DrawOrder::by_depth);
 
 // Do the frame's draws ask for what depths cannot express? That is so if something is noted above, or if a draw is
-// blended by its state, because blending depends on the order. False only if what is drawn by depth is what the API
-// draws. Frames without state and programs have no order: what lies on the far plane is drawn as well.
+// blended by its state, because blending depends on the order, or if clears of the depth buffer leave parts of the frame
+// fewer depths. False only if what is drawn by depth is what the API draws. Frames without state and programs have no
+// order: what lies on the far plane is drawn as well.
 bool needs_api_order(const Trace& trace, const Frame& frame);
 
 }  // namespace beampipe

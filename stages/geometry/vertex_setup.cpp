@@ -281,6 +281,7 @@ class TriangleSetup {
         to_world_(elements_of(job.draw.transform)),
         draw_index_(job.index),
         numbers_triangles_(job.numbers_triangles),
+        order_(job.order),
         vertices_(vertices),
         out_(out) {}
 
@@ -441,10 +442,11 @@ class TriangleSetup {
   void add_bias(SetupTriangle& triangle) {
     const DrawPlacement& to = screen_.placement;
     const auto [nearest, farthest] = std::minmax({triangle.vertex_z[0], triangle.vertex_z[1], triangle.vertex_z[2]});
-    const double bias =
-        limited_bias<double>(depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
-                                                triangle.depth.dzdx, triangle.depth.dzdy),
-                             nearest, farthest, to.window_offset, to.window_scale);
+    double bias = depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
+                                     triangle.depth.dzdx, triangle.depth.dzdy);
+    // In the API's order, depths are limited where they are tested.
+    if (order_ == DrawOrder::by_depth)
+      bias = limited_bias<double>(bias, nearest, farthest, to.window_offset, to.window_scale);
     triangle.depth.z += bias;
     for (float& z : triangle.vertex_z) z = static_cast<float>(z + bias);
     ++work_.biased;
@@ -523,6 +525,7 @@ class TriangleSetup {
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
   bool numbers_triangles_;
+  DrawOrder order_;
   const ProjectedVertex* vertices_;
   SetupTriangles& out_;
   Block block_;

@@ -73,8 +73,8 @@ class OrderedSamples {
         if (!is_early && !is_there()) return;
         double depth = 0;
         depth_span_sample(span, static_cast<double>(i), 0.0, depth);
-        depth = std::clamp(depth, -1.0, 0.0);
-        if (has_verdicts) depth = verdicts_[first_cell + i].depth.value_or(depth);
+        if (has_verdicts && verdicts_[first_cell + i].depth) depth = double{*verdicts_[first_cell + i].depth};
+        depth = std::clamp(depth, rule.nearest, rule.farthest);
         if (!passes_tests(rule, stencil, depth, run.at + i) || (is_early && !is_there())) return;
         std::uint32_t& passed = passed_[first_cell + i];
         if (passed == 0) cells_.push_back(static_cast<std::uint32_t>(first_cell + i));

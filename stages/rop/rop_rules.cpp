@@ -28,6 +28,10 @@ RopRule rop_rule(const DrawState& state) {
   RopRule rule;
   rule.depth = state.depth.test ? state.depth.function : Compare::always;
   rule.writes_depth = state.depth.test && state.depth.write;
+  if (!state.depth.clip) {
+    rule.nearest = double{std::min(state.depth.near, state.depth.far)} - 1;
+    rule.farthest = double{std::max(state.depth.near, state.depth.far)} - 1;
+  }
   if (state.stencil || state.stencil_back) {
     rule.has_stencil = true;
     rule.stencil[0] = state.stencil.value_or(Stencil{});

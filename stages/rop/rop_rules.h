@@ -21,6 +21,7 @@ namespace beampipe {
 struct RopRule {
   Compare depth = Compare::less;  // of what arrives with what is stored; `always` is no test
   bool writes_depth = true;
+  double nearest = -1, farthest = 0;  // depths of the frame to which fragments' depths are limited
   bool has_stencil = false;
   std::array<Stencil, 2> stencil{};  // of front and of back faces
   bool front_is_clockwise = false;

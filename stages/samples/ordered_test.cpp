@@ -80,7 +80,8 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
       float depth = 0;
       depth_test_scalar(plane, static_cast<float>(sampling.pattern.x[s]), static_cast<float>(sampling.pattern.y[s]),
                         0.0f, depth);
-      depth = fragment.depth.value_or(std::clamp(depth, -1.0f, 0.0f));
+      depth = std::clamp(fragment.depth.value_or(depth), static_cast<float>(rule.nearest),
+                         static_cast<float>(rule.farthest));
       if (!passes(rule.depth, depth, surface.depth[at])) {
         ++count.depth_failed;
         update(stencil.depth_fail);

@@ -1,6 +1,6 @@
 // ordered_test: sample fragments -> sample fragments that pass the stencil and depth tests, in the API's order.
 //
-// Depths are those of triangles, limited to -1..0 as buffers of fixed point do, or those that shaders gave.
+// Depths are those of triangles or those that shaders gave, limited as RopRule says.
 #pragma once
 
 #include <vector>

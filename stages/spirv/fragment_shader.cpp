@@ -27,6 +27,10 @@ ShaderEffects effects_of(std::span<const std::uint32_t> words) {
       found.tests_early |= operands[1] == spv::ExecutionModeEarlyFragmentTests;
     if (op == spv::OpDecorate && count >= 4 && operands[1] == spv::DecorationBuiltIn)
       built_ins.emplace_back(operands[0], operands[2]);
+    if (op == spv::OpGroupDecorate && count >= 2)
+      for (const std::uint32_t target : operands.subspan(1))
+        for (std::size_t i = built_ins.size(); i-- > 0;)
+          if (built_ins[i].first == operands[0]) built_ins.emplace_back(target, built_ins[i].second);
     if (op == spv::OpVariable && count >= 4 && operands[2] == spv::StorageClassOutput) {
       for (const auto& [id, built_in] : built_ins) {
         found.writes_depth |= id == operands[1] && built_in == spv::BuiltInFragDepth;

@@ -418,6 +418,75 @@ TEST(ApiOrder, MultisamplingConvergesToTheReference) {
   }
 }
 
+// A triangle over the whole picture, whose window depth is `left` at the left edge and changes by `step` in each pixel.
+Mesh slope(double left, double step, const glm::vec3& color) {
+  const auto at = [&](double x, double y) { return glm::dvec3(x, y, left + step * x); };
+  return pixel_trace(kSize, kSize, {{{at(0, 0), at(32, 0), at(0, 32)}, color}}).meshes[0];
+}
+
+Trace slopes(const std::vector<Mesh>& meshes) {
+  Trace trace = pixel_trace(kSize, kSize, {});
+  trace.meshes = meshes;
+  trace.frames[0].draws.clear();
+  for (std::uint32_t i = 0; i < meshes.size(); ++i) trace.frames[0].draws.push_back(Draw{.mesh = i});
+  return trace;
+}
+
+glm::vec3 color_at(const std::string& spec, const Trace& trace, std::uint32_t x) {
+  FrameInput run;
+  run.memory.modelled = false;
+  const Image image = parse_technique(spec).render(trace, 0, run).image;
+  const float* const pixel = &image.rgba[4 * (3 * kSize + x)];
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+// A bias towards the viewer decides ties, also of a triangle that lies partly before the near plane.
+TEST(ApiOrder, BiasCountsUpToTheNearPlane) {
+  Trace trace = slopes({slope(-0.25, 1.0 / 32, {1, 0, 0}), slope(-0.25, 1.0 / 32, {0, 1, 0})});
+  trace.frames[0].draws[1].state.depth.bias.constant = -0.01f;
+  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"}) {
+    EXPECT_EQ(color_at(spec, trace, 2), trace.frames[0].background) << spec << ": before the near plane";
+    EXPECT_EQ(color_at(spec, trace, 12), glm::vec3(0, 1, 0)) << spec;
+  }
+}
+
+// A bias of 0.25 takes what is farther than 0.75 to the end, which is not less than where depth was cleared to.
+TEST(ApiOrder, BiasEndsWhereDepthIsCleared) {
+  Trace trace = slopes({slope(0, 1.0 / 16, {1, 0, 0})});
+  trace.frames[0].draws[0].state.depth.bias.constant = 0.25f;
+  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"}) {
+    EXPECT_EQ(color_at(spec, trace, 6), glm::vec3(1, 0, 0)) << spec;
+    EXPECT_EQ(color_at(spec, trace, 13), trace.frames[0].background) << spec;
+  }
+}
+
+// Whole coverage by alpha does not change depths, at which the same triangle is drawn again.
+TEST(ApiOrder, CoverageByAlphaKeepsDepths) {
+  Trace trace = slopes({slope(0.1, 1.0 / 37, {1, 0, 0}), slope(0.1, 1.0 / 37, {1, 1, 1})});
+  Material material;
+  material.name = "green";
+  material.unlit = material.double_sided = true;
+  material.alpha_mode = AlphaMode::blend;
+  material.base_color = {0, 1, 0, 1};
+  trace.materials.push_back(material);
+  trace.frames[0].draws[1].material = 0;
+  DrawState& state = trace.frames[0].draws[1].state;
+  state.depth.function = Compare::equal, state.alpha_to_coverage = true;
+  state.blend = Blend{{BlendFactor::one, BlendFactor::zero}, {}, {}};
+  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"})
+    EXPECT_EQ(color_at(spec, trace, 6), glm::vec3(0, 1, 0)) << spec;
+}
+
+// Draws that are not clipped limit depths to their own range, 0 to 0.5 here, also after the bias: 0.45 + 0.25 is 0.5,
+// nearer than 0.6.
+TEST(ApiOrder, DepthsThatAreNotClippedStayInTheirRange) {
+  Trace trace = slopes({slope(0.9, 0, {1, 0, 0}), slope(0.6, 0, {0, 1, 0})});
+  DrawState& state = trace.frames[0].draws[0].state;
+  state.depth.far = 0.5f, state.depth.clip = false, state.depth.bias.constant = 0.25f;
+  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"})
+    EXPECT_EQ(color_at(spec, trace, 6), glm::vec3(1, 0, 0)) << spec;
+}
+
 // What moves between the units and their caches for a tile of 8-bit RGBA: a stencil test reads a word of each pixel,
 // blending reads and writes a colour.
 TEST(ApiOrder, MovesWhatDrawsReadAndWrite) {

@@ -98,6 +98,9 @@ std::string digest_of(const Trace& trace) {
     digest.add_all(frame.width, frame.height, frame.background, frame.view, frame.projection, frame.lighting.lights,
                    frame.lighting.ambient, frame.draws.size());
     if (frame.target != ColorTarget::srgb) digest.add(frame.target);
+    if (frame.background_alpha != 1) digest.add(frame.background_alpha);
+    const CapturedPictures& captured = frame.capture.pictures;
+    if (captured.color || !captured.depth.empty()) digest.add_all(captured.samples, captured.clear_depth);
     for (const Draw& draw : frame.draws) {
       const DrawState& state = draw.state;
       const DepthState& depth = state.depth;
@@ -108,6 +111,8 @@ std::string digest_of(const Trace& trace) {
       digest.add_all(depth.test, depth.write, depth.function, depth.near, depth.far, depth.bias, depth.clip,
                      depth.cleared_before);
       if (state.alpha_to_coverage) digest.add(state.alpha_to_coverage);
+      if (state.stencil_back) digest.add_all("back", *state.stencil_back);
+      if (state.stencil_cleared_to) digest.add_all("cleared", *state.stencil_cleared_to);
       if (draw.program) add(*draw.program, digest);
     }
   }

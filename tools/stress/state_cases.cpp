@@ -183,6 +183,7 @@ HardCase depth_clip_off() {
   cover(screen, 0.01, kBlue);
   DrawState state;
   state.depth.clip = false;
+  state.depth.function = Compare::less_equal;  // the far plane is where depth is cleared to
   state.scissor = Scissor{4, 0, 12, kSide};
   screen.draw(state);
   cover(screen, 1.5, kGreen);

@@ -128,7 +128,7 @@ TEST(DrawPlan, NotesWhatIsTranslucentBeforeOpaqueDraws) {
   draws.trace.materials.resize(1);
   draws.trace.materials[0].alpha_mode = AlphaMode::blend;
   draws.add(Compare::less);
-  Draw& sheet = draws.add(Compare::less_equal);
+  Draw& sheet = draws.add(Compare::less);
   sheet.material = 0;
   sheet.state.depth.write = false;
   EXPECT_TRUE(draws.notes().empty());
@@ -486,6 +486,29 @@ TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
   EXPECT_TRUE(needs([&](Draw& draw, Places& places) { places[1].z = 0.5f, draw.state.depth.bias.slope = 9; }));
 }
 
+TEST(DrawPlan, TranslucentDrawsThatWinTiesNeedTheApisOrder) {
+  for (const Compare function : {Compare::less, Compare::less_equal}) {
+    Draws draws;
+    draws.add(Compare::less_equal);
+    draws.trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
+    draws.add(function).material = 0;
+    EXPECT_EQ(needs_api_order(draws.trace, draws.frame), function == Compare::less_equal);
+    draws.add(Compare::equal).mesh = 1;
+    EXPECT_TRUE(needs_api_order(draws.trace, draws.frame)) << "translucent draws write no depth";
+  }
+}
+
+// Only one part of the frame can keep its depths.
+TEST(DrawPlan, DepthsOnBothSidesOfAClearNeedTheApisOrder) {
+  Draws draws;
+  draws.add(), draws.add_untested();
+  draws.frame.draws[1].state.depth.cleared_before = true;
+  EXPECT_FALSE(needs_api_order(draws.trace, draws.frame));
+  draws.add();
+  EXPECT_TRUE(needs_api_order(draws.trace, draws.frame));
+  EXPECT_TRUE(draws.notes().empty()) << "the order is right";
+}
+
 TEST(DrawPlan, APrePassOfOtherDepthsNeedsTheApisOrder) {
   const auto needs = [](auto&& change) {
     Draws draws;
@@ -499,6 +522,10 @@ TEST(DrawPlan, APrePassOfOtherDepthsNeedsTheApisOrder) {
   EXPECT_TRUE(needs([](Draw&, Draw& second) { second.state.scissor = Scissor{0, 0, 8, 8}; }));
   EXPECT_TRUE(needs([](Draw& first, Draw&) { first.material = 0; }));
   EXPECT_TRUE(needs([](Draw& first, Draw&) { first.state.depth.function = Compare::always; }));
+  EXPECT_TRUE(needs([](Draw&, Draw& second) { second.cull = Cull::back; }));
+  EXPECT_TRUE(needs([](Draw& first, Draw& second) {
+    first.cull = second.cull = Cull::back, second.state.front_is_clockwise = true;
+  }));
   EXPECT_TRUE(needs([](Draw&, Draw& second) { second.material = 0; }));
 }
 

@@ -25,6 +25,13 @@ OpKill
                   .interface = "%depth"});
   EXPECT_TRUE(depth.writes_depth);
   EXPECT_FALSE(depth.writes_samples);
+  const ShaderEffects by_group =
+      effects_of({.body = "",
+                  .globals = "%to_float = OpTypePointer Output %float\n%depth = OpVariable %to_float Output\n",
+                  .decorations = "OpDecorate %group BuiltIn FragDepth\n%group = OpDecorationGroup\n"
+                                 "OpGroupDecorate %group %depth\n",
+                  .interface = "%depth"});
+  EXPECT_TRUE(by_group.writes_depth);
 }
 
 // The same built-in is an input and an output.
