@@ -371,6 +371,22 @@ mutants=(  # file | text as it is | broken
   'stages/data/pooled_pixels.h|peak_ = std::max(peak_, used());|peak_ = std::max(peak_, used_on_chip_);'
   'stages/rop/rop_formulas.h|return one - source[3];|return one - source[c];'
   'stages/rop/rop_formulas.h|return stored[3];|return stored[c];'
+  'stages/spirv/module_limits.cpp|kReplacedElements = 100;|kReplacedElements = 1;'
+  'stages/spirv/module_limits.cpp|function.sizes += visit(functions_.at(called));|visit(functions_.at(called));'
+  'stages/spirv/module_limits.cpp|parts_[at(0)] = 1 + of(at(2));|parts_[at(0)] = 1;'
+  'stages/spirv/module_limits.cpp|steps = (variable == operands[0] ? of(operands[1]).steps : steps) + 1;|steps = 1;'
+  'stages/spirv/module_limits.cpp|stored_[variable_of(operands[2])] + 1;|1;'
+  'stages/spirv/module_limits.cpp|if (count > 1) changing += parts[variable];|'
+  'stages/spirv/module_limits.cpp|decorations[operands[0]] * operands.size();|operands.size();'
+  'stages/spirv/simplify.cpp|clear(spv::FunctionControlDontInlineMask);|clear(0);'
+  'stages/spirv/simplify.cpp|.RegisterPass(spvtools::CreateCompactIdsPass());|;'
+  'stages/spirv/module.cpp|if (to.blocks == 1) module.ending_.insert(to.function);|'
+  'stages/spirv/decode.cpp|block.edges.successors.clear();|;'
+  'stages/spirv/decode_values.cpp|if (count > 0) all_parts_ += parts_of(type);|parts_of(type);'
+  'stages/spirv/assign_rows.cpp|written.insert(to);|'
+  'stages/spirv/shader_executor.cpp|stopped_ += stopped;|'
+  'stages/surface/program_shader.cpp|if (counts.stopped > 0) bound.most_steps = kStepsOfEndless;|'
+  'stages/surface/program_shader.cpp|if (counts.stopped > 0) *draw.stopped += counts.stopped;|'
 )
 
 stale=0

@@ -216,6 +216,24 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                               "%r = OpCompositeConstruct %u4 %sum999 %sum999 %sum999 %sum999\nOpStore %iout %r\n",
                       .globals = "%to_uint = OpTypePointer Function %uint\n"}),
             "expected at most 524288 ways between blocks, times variables that change");
+  // One variable with as many parts, in 600 cases.
+  const auto table_with = [](const std::string& row) {
+    return ShaderParts{.body =
+                           "%table = OpVariable %to_table Function\n; begin\n%n = OpCompositeExtract %uint %vi 0\n"
+                           "%place = OpAccessChain %to_uint %table %u1 %u2_\n"
+                           "OpSelectionMerge %after None\nOpSwitch %n %after" +
+                           repeated(" # %case#", 0, 600) + "\n" +
+                           repeated("%case# = OpLabel\nOpStore %place %u2_\nOpBranch %after\n", 0, 600) +
+                           "%after = OpLabel\n%y = OpLoad %uint %place\n"
+                           "%r = OpCompositeConstruct %u4 %y %y %y %y\nOpStore %iout %r\n",
+                       .globals =
+                           "%ten = OpConstant %uint 10\n%hundred = OpConstant %uint 100\n"
+                           "%row = OpTypeArray %uint %hundred\n%table_type = OpTypeArray %row " +
+                           row + "\n%to_table = OpTypePointer Function %table_type\n" +
+                           "%to_uint = OpTypePointer Function %uint\n"};
+  };
+  EXPECT_EQ(error_of(table_with("%ten")), "expected at most 524288 ways between blocks, times variables that change");
+  EXPECT_EQ(error_of(table_with("%u3_")), "no error");
 }
 
 // Values that the optimizer keeps for each of 3000 blocks.
