@@ -386,7 +386,7 @@ mutants=(  # file | text as it is | broken
   'stages/spirv/simplify.cpp|clear(spv::FunctionControlDontInlineMask);|clear(0);'
   'stages/spirv/simplify.cpp|.RegisterPass(spvtools::CreateCompactIdsPass());|;'
   'stages/spirv/module.cpp|if (to.blocks == 1) module.ending_.insert(to.function);|'
-  'stages/spirv/decode.cpp|{.op = spv::OpKill}, block.edges.successors.clear();|{.op = spv::OpKill};'
+  'stages/spirv/decode.cpp|if (ends_invocation) block.end|if (false) block.end'
   'stages/spirv/decode_values.cpp|if (count > 0) all_parts_ += parts_of(type);|if (count > 0) all_parts_ = parts_of(type);'
   'stages/spirv/assign_rows.cpp|written.insert(to);|'
   'stages/spirv/shader_executor.cpp|stopped_ += stopped;|'

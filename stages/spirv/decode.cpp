@@ -72,7 +72,7 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
     block.phis = body.subspan(first, phis);
     block.others = body.subspan(first + phis, i - first - phis);
     block.end = instruction;
-    if (ends_invocation) block.end = {.op = spv::OpKill}, block.edges.successors.clear();
+    if (ends_invocation) block.end = {.op = spv::OpKill};
   }
   for (const Block& block : blocks)
     if (block.end.op == spv::OpNop) throw ShaderError("a block ends in a way that is not supported");
