@@ -16,7 +16,7 @@ import measure
 from errors import emr
 
 SPECS = ("beam", "msaa:8", "msaa:32")
-SHADING = {"vertex_setup", "shade", "alpha_test", "alpha_mask"}
+NOT_COUNTED = {"vertex_setup", "shade", "alpha_test", "alpha_mask"}
 
 
 def listed(numbers, form):
@@ -24,7 +24,7 @@ def listed(numbers, form):
 
 
 def operations(result):
-    return sum(stage["ops"]["total"] for name, stage in measure.stages(result).items() if name not in SHADING)
+    return sum(stage["ops"]["total"] for name, stage in measure.stages(result).items() if name not in NOT_COUNTED)
 
 
 def main(program, frames, comparisons, folder):

@@ -24,9 +24,8 @@
 namespace beampipe {
 
 // Drops fragments of which nothing is left, and adds those that are discarded after their tests, each right after what
-// is left of it. `patterns`: the mask positions. Adds the texels that are read to `texels`,
-// unless it is null: a request for each word of a mask, whose positions are tested at once, or for all parts of a
-// pixel.
+// is left of it. `patterns`: the mask positions. Adds the texels that are read to `texels`, unless it is null: a request
+// for each word of a mask, whose positions are tested at once, or for all parts of a pixel.
 void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, AlphaPlaces places,
                 StageCounters& counters, std::vector<Fragment>& fragments, TexelRequests* texels = nullptr);
 

@@ -110,14 +110,13 @@ class Planner {
     }
     if (state.blend) {
       const bool translucent = is_translucent(trace_, draw);
-      if (!is_alpha_blending(*state.blend) && !replaces(*state.blend) &&
-          (translucent || !replaces_where_opaque(*state.blend))) {
-        leave_out(draw, is(*state.blend, BlendFactor::one, BlendFactor::one_minus_source_alpha)
-                            ? "blending of premultiplied colours"
-                            : "a blend function other than alpha blending");
+      const BlendEquation& equation = state.blend->color;
+      if (equation != kAlphaBlending && equation != kReplacing && (translucent || !replaces_where_opaque(equation))) {
+        leave_out(draw, equation == kPremultipliedBlending ? "blending of premultiplied colours"
+                                                           : "a blend function other than alpha blending");
         return false;
       }
-      placement.is_opaque = translucent && replaces(*state.blend);
+      placement.is_opaque = translucent && equation == kReplacing;
     }
     if ((state.color_mask & kColorChannels) != kColorChannels)
       note(draw, "only some colour channels are written", false);
@@ -155,7 +154,7 @@ DrawPlan plan_draws(const Trace& trace, const Frame& frame, DrawOrder order) {
 
 bool needs_api_order(const Trace& trace, const Frame& frame) {
   const auto is_blended = [&](const Draw& draw) {
-    return draw.state.blend && !replaces(*draw.state.blend) && is_translucent(trace, draw);
+    return draw.state.blend && draw.state.blend->color != kReplacing && is_translucent(trace, draw);
   };
   if (std::ranges::any_of(frame.draws, is_blended)) return true;
   const DrawPlan plan = plan_draws(trace, frame);

@@ -7,23 +7,19 @@ namespace beampipe {
 
 inline constexpr std::uint32_t kColorChannels = kRedChannel | kGreenChannel | kBlueChannel;
 
-inline bool is(const Blend& blend, BlendFactor source, BlendFactor destination) {
-  return blend.color == BlendEquation{source, destination, BlendOperation::add};
-}
+inline constexpr BlendEquation kReplacing{BlendFactor::one, BlendFactor::zero};
+inline constexpr BlendEquation kKeeping{BlendFactor::zero, BlendFactor::one};
+inline constexpr BlendEquation kAlphaBlending{};
+inline constexpr BlendEquation kPremultipliedBlending{BlendFactor::one, BlendFactor::one_minus_source_alpha};
 
-inline bool replaces(const Blend& blend) { return is(blend, BlendFactor::one, BlendFactor::zero); }
-inline bool is_alpha_blending(const Blend& blend) { return blend.color == BlendEquation{}; }
-
-// Where opacity is 1.
-inline bool replaces_where_opaque(const Blend& blend) {
-  return is_alpha_blending(blend) || replaces(blend) ||
-         is(blend, BlendFactor::one, BlendFactor::one_minus_source_alpha) ||
-         is(blend, BlendFactor::source_alpha, BlendFactor::zero);
+// Does the colour that arrives replace the stored one where opacity is 1?
+inline bool replaces_where_opaque(const BlendEquation& equation) {
+  return equation == kAlphaBlending || equation == kReplacing || equation == kPremultipliedBlending ||
+         equation == BlendEquation{BlendFactor::source_alpha, BlendFactor::zero};
 }
 
 inline bool writes_color(const DrawState& state) {
-  return (state.color_mask & kColorChannels) != 0 &&
-         !(state.blend && is(*state.blend, BlendFactor::zero, BlendFactor::one));
+  return (state.color_mask & kColorChannels) != 0 && !(state.blend && state.blend->color == kKeeping);
 }
 
 inline bool writes_depth(const DepthState& depth) {

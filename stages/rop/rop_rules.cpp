@@ -10,13 +10,6 @@ namespace {
 // A colour that is not multiplied by its alpha, over what is stored.
 constexpr Blend kOver{BlendEquation{}, BlendEquation{BlendFactor::one, BlendFactor::one_minus_source_alpha}};
 
-bool keeps(const BlendEquation& equation) {
-  return equation == BlendEquation{BlendFactor::zero, BlendFactor::one, BlendOperation::add};
-}
-bool replaces(const BlendEquation& equation) {
-  return equation == BlendEquation{BlendFactor::one, BlendFactor::zero, BlendOperation::add};
-}
-
 bool writes(const Stencil& stencil) {
   constexpr StencilOperation kKeep = StencilOperation::keep;
   return stencil.write_mask != 0 && (stencil.fail != kKeep || stencil.depth_fail != kKeep || stencil.pass != kKeep);
@@ -37,7 +30,7 @@ RopRule rop_rule(const DrawState& state) {
     rule.stencil[0] = state.stencil.value_or(Stencil{});
     rule.stencil[1] = state.stencil_back.value_or(rule.stencil[0]);
   }
-  if (state.blend && !(replaces(state.blend->color) && replaces(state.blend->alpha.value_or(state.blend->color))))
+  if (state.blend && !(state.blend->color == kReplacing && state.blend->alpha.value_or(kReplacing) == kReplacing))
     rule.blend = state.blend;
   rule.color_mask = state.color_mask;
   rule.front_is_clockwise = state.front_is_clockwise;
@@ -47,8 +40,8 @@ RopRule rop_rule(const DrawState& state) {
 bool RopRule::writes_stencil() const { return has_stencil && (writes(stencil[0]) || writes(stencil[1])); }
 
 bool RopRule::writes_color() const {
-  const bool keeps_rgb = blend && keeps(blend->color),
-             keeps_alpha = blend && keeps(blend->alpha.value_or(blend->color));
+  const bool keeps_rgb = blend && blend->color == kKeeping,
+             keeps_alpha = blend && blend->alpha.value_or(blend->color) == kKeeping;
   return ((color_mask & kColorChannels) != 0 && !keeps_rgb) || ((color_mask & kAlphaChannel) != 0 && !keeps_alpha);
 }
 
