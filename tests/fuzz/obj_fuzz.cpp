@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       Trace trace;
       NotRead not_read;
-      read_obj(file, "", materials, trace, not_read);
+      read_obj(file, {.materials = materials}, trace, not_read);
       require_sound(trace);
     } catch (const TraceError& error) {
       require_one_line(error.what());

@@ -77,7 +77,8 @@ TEST_F(ArrayReaderTest, SaysWhereAndWhatIsWrong) {
   expect_errors(
       views_, [&](const Json& json) { return error_in(json); },
       {{"/buffers/b/bytes", "83", R"(expected the size of "b.bin", 84, found 83)"},
-       {"/buffers/b/file", R"("../b.bin")", R"(expected a path that stays in the trace's folder, found "../b.bin")"},
+       {"/buffers/b/file", R"("../b.bin")",
+        R"(expected a path that stays in the trace's folder (--allow-outside allows others), found "../b.bin")"},
        {"/buffers/b/file", R"("none.bin")", R"(expected an existing file, found "none.bin")"},
        {"/meshes/a/positions/buffer", R"("c")", R"(expected the name of a buffer in /buffers, found "c")"},
        {"/meshes/a/positions/offset", "2", "expected a multiple of 4 in a buffer of 84 bytes, found 2"},

@@ -23,7 +23,9 @@ class MeshPathTest : public FolderTest {
   }
 };
 
-constexpr char kStays[] = "in/scene.json: /meshes/m/obj: expected a path that stays in the trace's folder, found ";
+constexpr char kStays[] =
+    "in/scene.json: /meshes/m/obj: expected a path that stays in the trace's folder (--allow-outside allows others), "
+    "found ";
 
 TEST_F(MeshPathTest, ReadsFilesInTheFolder) {
   for (const char* obj : {"ship.obj", "./ship.obj", "deep/ship.obj", "deep/../ship.obj"}) {

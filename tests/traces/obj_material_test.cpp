@@ -21,7 +21,8 @@ class ObjMaterialTest : public FolderTest {
                      ObjMaterials materials = ObjMaterials::textured) const {
     write("m.mtl", mtl);
     ImportedModel model;
-    read_obj(write("mesh.obj", "mtllib m.mtl\n" + kSquare + obj), "", materials, model.trace, model.not_read);
+    read_obj(write("mesh.obj", "mtllib m.mtl\n" + kSquare + obj), {.materials = materials}, model.trace,
+             model.not_read);
     return model;
   }
   // Of a square with all attributes, whose material "m" has these lines.
@@ -145,7 +146,7 @@ TEST_F(ObjMaterialTest, ReadsColoursOfVertices) {
   const auto colors = [&](const std::string& obj) {
     Trace trace;
     NotRead not_read;
-    read_obj(write("mesh.obj", obj), "", ObjMaterials::all, trace, not_read);
+    read_obj(write("mesh.obj", obj), {.materials = ObjMaterials::all}, trace, not_read);
     return trace.meshes.at(0).vertex_colors;
   };
   EXPECT_EQ(colors("v 0 0 0 1 0 0\nv 1 0 0 0 +0.5 0\nv 0 1 0 0 0 2\nf 1 2 3\n"),

@@ -257,11 +257,14 @@ TEST_F(SurfaceReaderTest, ImagesStayInTheFolderAsMeshesDo) {
   };
   const std::string at = "in/scene.json: /images/wood/file: ";
   EXPECT_EQ(error("wood.png", false), "no error");
-  EXPECT_EQ(error("../wood.png", false),
-            at + "expected a path that stays in the trace's folder, found \"../wood.png\"");
+  EXPECT_EQ(
+      error("../wood.png", false),
+      at + "expected a path that stays in the trace's folder (--allow-outside allows others), found \"../wood.png\"");
   EXPECT_EQ(error("../wood.png", true), "no error");
   std::filesystem::create_symlink(path("wood.png"), path("in/link.png"));
-  EXPECT_EQ(error("link.png", false), at + "expected a path that stays in the trace's folder, found \"link.png\"");
+  EXPECT_EQ(
+      error("link.png", false),
+      at + "expected a path that stays in the trace's folder (--allow-outside allows others), found \"link.png\"");
   EXPECT_EQ(error("missing.png", false), at + "expected an existing file, found \"missing.png\"");
   EXPECT_EQ(error(".", false), at + "expected a regular file, found \".\"");
   ASSERT_EQ(mkfifo(path("in/pipe.png").c_str(), 0666), 0);

@@ -230,7 +230,7 @@ TEST_F(TraceReaderTest, RefusesPipesAndDevices) {
   const auto load_obj = [](const std::filesystem::path& file) {
     Trace trace;
     NotRead not_read;
-    read_obj(file, "", ObjMaterials::none, trace, not_read);
+    read_obj(file, {}, trace, not_read);
   };
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0666), 0);
   EXPECT_EQ(error_of([&] { read_trace(path("pipe")); }), "pipe" + expected);

@@ -17,8 +17,8 @@ namespace {
 constexpr float kSky = 0.35f;             // of white light over the shoulder
 constexpr float kGround = 0.15f / 0.35f;  // of what the sky gives
 constexpr const char* kViewOptions[] = {"--view", "--eye", "--target", "--up", "--fovy", "--near", "--far"};
-constexpr const char* kOtherOptions[] = {"--light", "--ambient",   "--background",
-                                         "--unlit", "--materials", "--animation"};
+constexpr const char* kOtherOptions[] = {"--light",     "--ambient",   "--background",  "--unlit",
+                                         "--materials", "--animation", "--follow-links"};
 
 glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
 
@@ -56,7 +56,7 @@ ImportedModel read_obj_model(const std::string& file, const ModelOptions& option
                                  : options.materials == "textured" ? ObjMaterials::textured
                                                                    : ObjMaterials::none;
   ImportedModel model;
-  read_obj(file, "", materials, model.trace, model.not_read);
+  read_obj(file, {.materials = materials, .follow_links = options.follow_links}, model.trace, model.not_read);
   Frame& frame = model.trace.frames.emplace_back();
   frame.width = width;
   frame.height = height;
@@ -157,6 +157,8 @@ Option add_model_options(Command& command, ModelOptions& options) {
            "colour Kd: all, those that have textures, or none")
       .one_of({"all", "textured", "none"})
       .shows_default();
+  command.add_flag("--follow-links", options.follow_links,
+                   "follow symbolic links from the model's files to files outside its folder");
   return command.add("--animation", options.animation,
                      "of a glTF model: the name of the animation to show, or its number from 0 (default: 0)");
 }
@@ -183,7 +185,8 @@ Trace trace_of_model(const std::string& file, const ModelOptions& options, const
                                                              .height = frames.height,
                                                              .frames = frames.count,
                                                              .animation = options.animation,
-                                                             .animation_if_any = frames.count > 1 && !frames.move});
+                                                             .animation_if_any = frames.count > 1 && !frames.move,
+                                                             .follow_links = options.follow_links});
   say_not_read(file, model.not_read);
   Trace& trace = model.trace;
   Viewpoint viewpoint;

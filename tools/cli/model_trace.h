@@ -15,7 +15,7 @@ struct ModelOptions {
   std::string view, camera;
   std::vector<double> eye, target, up, background, light;
   double fovy = 0, near = 0, far = 0, ambient = 0;
-  bool unlit = false;
+  bool unlit = false, follow_links = false;
   std::string materials = "textured", animation;
 };
 

@@ -166,7 +166,7 @@ std::size_t FrameRecords::read(const std::vector<std::size_t>& frames, const std
     const std::optional<FrameRecord> record = read(frames[taken], specs, no_sums);
     if (!record || !take(*record)) break;
   }
-  if (taken > 0) set_farewell(taken, frames.size());
+  set_kept(taken, frames.size());
   return taken;
 }
 
@@ -194,18 +194,19 @@ void FrameRecords::write(const FrameRecord& record, std::size_t finished, std::s
   for (const FrameReport& report : record.reports) json["techniques"].push_back(stored_json(report));
   json["files"] = digests_of_files(output_.path(), record);
   output_.write(frame_record_name(record.reports.front().index), json_text(sealed(std::move(json))));
-  set_farewell(finished, all);
+  set_kept(finished, all);
 }
 
 void FrameRecords::remove() {
-  output_.set_farewell("");
+  output_.set_kept("");
   for (const fs::path& path : list()) output_.remove(path.lexically_relative(output_.path()));
   output_.remove(kFolder);  // stays if something else is in it
 }
 
-void FrameRecords::set_farewell(std::size_t finished, std::size_t all) const {
-  output_.set_farewell("beampipe: stopped; " + std::to_string(finished) + " of " + std::to_string(all) +
-                       " frames are kept, and the same command with --resume goes on from there\n");
+void FrameRecords::set_kept(std::size_t finished, std::size_t all) const {
+  output_.set_kept(finished == 0 ? "no frame is complete"
+                                 : std::to_string(finished) + " of " + std::to_string(all) +
+                                       " frames are kept, and the same command with --resume goes on from there");
 }
 
 std::vector<fs::path> FrameRecords::list() const {

@@ -38,7 +38,7 @@ struct FrameRecord {
 
 class FrameRecords {
  public:
-  FrameRecords(OutputFolder& output, Json maker) : output_(output), maker_(std::move(maker)) {}
+  FrameRecords(OutputFolder& output, Json maker) : output_(output), maker_(std::move(maker)) { set_kept(0, 0); }
 
   // Throws std::runtime_error, one line, if the folder has results of another trace, or of `compare` while this is
   // `run`, which has no errors.
@@ -58,12 +58,12 @@ class FrameRecords {
   // `finished`: with this frame. An interrupt then says so, and how to go on.
   void write(const FrameRecord& record, std::size_t finished, std::size_t all);
 
-  // Removes all records. An interrupt then says nothing.
+  // Removes all records. An interrupt then says nothing of frames.
   void remove();
 
  private:
   std::optional<FrameRecord> read(std::size_t frame, const std::vector<std::string>& specs, const Json& no_sums) const;
-  void set_farewell(std::size_t finished, std::size_t all) const;
+  void set_kept(std::size_t finished, std::size_t all) const;
   std::vector<std::filesystem::path> list() const;
   [[noreturn]] void refuse(const Json& other_maker) const;
 

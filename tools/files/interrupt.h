@@ -27,15 +27,16 @@ class InterruptGate {
   // program. The caller must hold the gate.
   void set_unfinished(std::filesystem::path file) { unfinished_ = std::move(file); }
 
-  // What an interrupt prints on standard error before it ends the program. The caller must hold the gate.
-  void set_farewell(std::string text) { farewell_ = std::move(text); }
+  // What an interrupt says on standard error after "stopped", before it ends the program: what is kept and how to go
+  // on; nothing if empty. The caller must hold the gate.
+  void set_kept(std::string text) { kept_ = std::move(text); }
 
  private:
   void wait_for_signal();
 
   std::mutex mutex_;
   std::filesystem::path unfinished_;
-  std::string farewell_;
+  std::string kept_;
   std::atomic<bool> closing_ = false;
   sigset_t signals_, previous_mask_;
   std::thread waiter_;

@@ -122,9 +122,9 @@ void OutputFolder::remove(const fs::path& name) {
   fs::remove(folder_ / name, ignored);
 }
 
-void OutputFolder::set_farewell(std::string text) {
+void OutputFolder::set_kept(std::string text) {
   const auto held = gate_.hold();
-  gate_.set_farewell(std::move(text));
+  gate_.set_kept(std::move(text));
 }
 
 }  // namespace beampipe

@@ -49,8 +49,8 @@ class OutputFolder {
   // Removes folder/name if it exists.
   void remove(const std::filesystem::path& name);
 
-  // What an interrupt prints from now on, before it ends the program.
-  void set_farewell(std::string text);
+  // What an interrupt says is kept from now on.
+  void set_kept(std::string text);
 
   // Everything written so far stays when this object is destroyed.
   void keep() { new_.clear(); }

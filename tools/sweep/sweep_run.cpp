@@ -52,7 +52,7 @@ class Tally {
   Tally(std::size_t parts, InterruptGate& gate) : parts_(parts), gate_(gate) { tell(); }
   ~Tally() {
     const auto held = gate_.hold();
-    gate_.set_farewell("");
+    gate_.set_kept("");
   }
 
   void add(CellSource source) {
@@ -80,7 +80,7 @@ class Tally {
     }
     progress_.show(count + left);
     const auto held = gate_.hold();
-    gate_.set_farewell("beampipe: stopped; " + count + " are kept, and the same command goes on from there\n");
+    gate_.set_kept(count + " are kept, and the same command goes on from there");
   }
 
   std::size_t parts_;

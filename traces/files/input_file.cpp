@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "traces/files/json.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe {
@@ -28,7 +27,8 @@ void fail_trace(const std::string& where, const std::string& expected, const std
 std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where, std::uint64_t most_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) fail_trace(where, "a readable file", "none");
+  const bool is_link = std::filesystem::is_symlink(std::filesystem::symlink_status(file, error));
+  if (!std::filesystem::exists(status)) fail_trace(where, "a readable file", is_link ? "a link to none" : "none");
   if (std::filesystem::is_directory(status)) fail_trace(where, "a readable file", "a folder");
   if (!std::filesystem::is_regular_file(status)) fail_trace(where, "a regular file", "a pipe or a device");
   const std::uint64_t size = std::filesystem::file_size(file, error);
@@ -50,16 +50,6 @@ std::string read_input_file(const std::filesystem::path& file, const std::string
     bytes.append(part, static_cast<std::size_t>(stream.gcount()));
   if (stream.bad()) fail_trace(where, "a file that can be read to its end", "one that cannot");
   return bytes;
-}
-
-std::string read_file_beside(const std::filesystem::path& model, const std::string& name, const std::string& where) {
-  const std::filesystem::path folder = std::filesystem::canonical(model).parent_path();
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::weakly_canonical(folder / name, error);
-  const std::filesystem::path relative = path.lexically_relative(folder);
-  if (error || relative.empty() || *relative.begin() == ".." || std::filesystem::path(name).is_absolute())
-    fail_trace(where, "a file in the model's folder", in_quotes(name));
-  return read_input_file(path, where + ": " + name);
 }
 
 }  // namespace beampipe

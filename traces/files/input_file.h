@@ -24,8 +24,4 @@ std::ifstream open_input_file(const std::filesystem::path& file, const std::stri
 std::string read_input_file(const std::filesystem::path& file, const std::string& where,
                             std::uint64_t most_bytes = kMostInputBytes);
 
-// The same for a file that a model names, which must be in the model's folder, or in one inside that. Symbolic links
-// are followed first.
-std::string read_file_beside(const std::filesystem::path& model, const std::string& name, const std::string& where);
-
 }  // namespace beampipe

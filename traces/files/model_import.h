@@ -24,23 +24,27 @@ using NotRead = std::map<std::string, std::size_t>;
 //   all       all
 enum class ObjMaterials { none, textured, all };
 
+struct ObjOptions {
+  ObjMaterials materials = ObjMaterials::none;
+  bool follow_links = false;  // the files that it names may be links to others outside its folder
+  std::string named_by = {};  // the place in a trace that names the OBJ, with which errors start
+};
+
 // Adds an OBJ with its .mtl to a trace: one mesh, the materials that its triangles use, and their images. Polygons are
 // triangulated; faces without a material, and materials without Kd, are 0.8 grey. A missing .mtl counts as no material
 // and as not read, and so does an unknown usemtl; a .mtl outside the OBJ's folder is an error, and so is an image that
-// is missing or outside the folder. The mesh gets the file's name without
-// ".obj". Errors start with `named_by`, the place in the trace that names the file, unless it is empty. Throws
-// TraceError.
+// is missing or outside the folder. The mesh gets the file's name without ".obj". Throws TraceError.
 //
 // The .mtl's materials become glTF's (traces/files/obj_material.h says how). With ObjMaterials::none, normals, texture
 // coordinates and all keywords of materials except Kd count as comments.
-void read_obj(const std::filesystem::path& file, const std::string& named_by, ObjMaterials materials, Trace& trace,
-              NotRead& not_read);
+void read_obj(const std::filesystem::path& file, const ObjOptions& options, Trace& trace, NotRead& not_read);
 
 struct GltfOptions {
   std::uint32_t width = 320, height = 180;  // of the frames, in pixels
   std::uint32_t frames = 1;                 // frame i shows the animation at i / frames of its length
   std::string animation = {};               // its name, or its number from 0; empty: the first one, or none
   bool animation_if_any = false;            // without a named animation: show the first one if there is any
+  bool follow_links = false;                // the files that it names may be links to others outside its folder
 };
 
 // A model as a trace, whose frames have no background.

@@ -12,6 +12,7 @@
 
 #include "traces/files/input_file.h"
 #include "traces/files/json.h"
+#include "traces/files/model_folder.h"
 #include "traces/files/model_import.h"
 #include "traces/files/obj_material.h"
 #include "traces/files/triangulate.h"
@@ -181,11 +182,11 @@ std::string without_escapes(std::string_view name) {
   return plain;
 }
 
-// The material libraries that an OBJ names, which must be in the OBJ's own folder.
+// The material libraries that an OBJ names.
 class Libraries {
  public:
-  Libraries(const fs::path& obj, const std::string& where, ObjMaterials materials, NotRead& not_read)
-      : folder_(fs::canonical(obj).parent_path()), where_(where), materials_(materials), not_read_(not_read) {}
+  Libraries(const ModelFolder& folder, const std::string& where, ObjMaterials materials, NotRead& not_read)
+      : folder_(folder), where_(where), materials_(materials), not_read_(not_read) {}
 
   // Reads those of all mtllib lines. Such a line has one name, in which blanks may be, or several names.
   void read_all(std::string_view obj_text) {
@@ -230,18 +231,13 @@ class Libraries {
  private:
   bool is_there(const std::string& name) const {
     std::error_code ignored;
-    return !name.empty() && fs::is_regular_file(folder_ / name, ignored);
+    return !name.empty() && fs::is_regular_file(folder_.file(name, where_), ignored);
   }
 
   // False if there is no such file.
   bool read(const std::string& name) {
-    std::error_code error;
-    const fs::path file = fs::weakly_canonical(folder_ / name, error);
-    const fs::path relative = file.lexically_relative(folder_);
-    if (error || relative.empty() || *relative.begin() == ".." || fs::path(name).is_absolute()) {
-      fail_trace(where_, "an mtllib in the OBJ's folder", in_quotes(name));
-    }
-    if (!fs::exists(file, error)) return false;
+    const fs::path file = folder_.file(name, where_);
+    if (!fs::exists(file)) return false;
     if (files_.insert(file).second) read(file, where_ + ": " + name);
     return true;
   }
@@ -268,7 +264,7 @@ class Libraries {
     }
   }
 
-  fs::path folder_;
+  const ModelFolder& folder_;
   std::string where_;
   ObjMaterials materials_;
   NotRead& not_read_;
@@ -445,16 +441,17 @@ bool is_model_file(const std::filesystem::path& file) {
   return is_obj_file(file) || extension_of(file) == ".gltf" || extension_of(file) == ".glb";
 }
 
-void read_obj(const fs::path& file, const std::string& named_by, ObjMaterials materials, Trace& trace,
-              NotRead& not_read) {
-  const std::string where = (named_by.empty() ? "" : named_by + ": ") + file.string();
+void read_obj(const fs::path& file, const ObjOptions& options, Trace& trace, NotRead& not_read) {
+  const ObjMaterials materials = options.materials;
+  const std::string where = (options.named_by.empty() ? "" : options.named_by + ": ") + file.string();
   std::string bytes = read_text(file, where, materials);
   std::vector<glm::vec3> colors;
   if (materials != ObjMaterials::none) {
     colors = vertex_colors(bytes);
     count_not_read(bytes, {"v", "vt", "vn", "f", "usemtl", "mtllib", "o", "g", "s"}, not_read);
   }
-  Libraries libraries(file, where, materials, not_read);
+  const ModelFolder folder(file, options.follow_links);
+  Libraries libraries(folder, where, materials, not_read);
   libraries.read_all(bytes);
   std::stringstream text(std::move(bytes));
   const Polygons polygons = load(text, libraries, materials);
@@ -471,7 +468,7 @@ void read_obj(const fs::path& file, const std::string& named_by, ObjMaterials ma
   check_finite(polygons.normals, "normal");
   check_finite(polygons.uvs, "texture coordinate");
 
-  MaterialsInUse in_use(materials, ObjMaterialReader(file, where, trace, not_read), trace);
+  MaterialsInUse in_use(materials, ObjMaterialReader(folder, where, trace, not_read), trace);
   std::vector<std::uint32_t> indices;  // of the polygons' materials
   for (const tinyobj::material_t* material : polygons.materials) indices.push_back(in_use.index_of(material));
   const bool is_flat = std::all_of(indices.begin(), indices.end(), [](auto index) { return index == kNoMaterial; });

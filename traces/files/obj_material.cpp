@@ -96,7 +96,7 @@ std::uint32_t ObjMaterialReader::image(const std::string& name) {
   if (const auto found = images_.find(name); found != images_.end()) return found->second;
   std::string path = name;
   std::replace(path.begin(), path.end(), '\\', '/');  // of Windows
-  TextureImage image = decode_image(read_file_beside(obj_, path, where_), where_ + ": " + name);
+  TextureImage image = decode_image(folder_.read(path, where_), where_ + ": " + name);
   image.name = name;
   return keep(name, std::move(image));
 }

@@ -9,20 +9,19 @@
 //   Pr, Pm              roughness and metallic, if above 0
 //   Ke, map_Ke          emission
 //   d, Tr               opacity: below 1, the material is blended
-//   map_d               a cutout (alpha mode mask). Alpha is the image's own if it has some below 255, otherwise its
-//   red norm                normal map; map_Bump too if its image is not grey, because many programs write it so
-//   map_Bump, bump      height map, which becomes a normal map: from black to white, it rises by -bm times the side of
-//   a
-//                       texel. (The format does not say how high a height map is.)
+//   map_d               a cutout (alpha mode mask). Alpha is the image's own if it has some below 255, otherwise red
+//   norm                normal map; map_Bump too if its image is not grey, because many programs write it so
+//   map_Bump, bump      height map, which becomes a normal map: from black to white, it rises by -bm times a texel's
+//                       side. (The format does not say how high a height map is.)
 //   -clamp, -bm         options of these maps: clamping, and the scale of normals or heights
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
+#include "traces/files/model_folder.h"
 #include "traces/files/model_import.h"
 
 namespace tinyobj {
@@ -35,10 +34,9 @@ namespace beampipe {
 // Adds materials and images to a trace when they are asked for.
 class ObjMaterialReader {
  public:
-  // Images are in the folder of the file `obj`. Messages start with `where`. The trace and `not_read` must outlive
-  // this.
-  ObjMaterialReader(const std::filesystem::path& obj, const std::string& where, Trace& trace, NotRead& not_read)
-      : obj_(obj), where_(where), trace_(trace), not_read_(not_read) {}
+  // Messages start with `where`. The folder, the trace and `not_read` must outlive this.
+  ObjMaterialReader(const ModelFolder& folder, const std::string& where, Trace& trace, NotRead& not_read)
+      : folder_(folder), where_(where), trace_(trace), not_read_(not_read) {}
 
   // Adds a material and its images; returns its index in the trace. Images that several materials use are added once.
   // Throws TraceError.
@@ -52,7 +50,7 @@ class ObjMaterialReader {
   std::uint32_t normals_from(std::uint32_t heights, float scale, Wrap wrap);
   std::uint32_t keep(const std::string& key, TextureImage image);
 
-  std::filesystem::path obj_;
+  const ModelFolder& folder_;
   std::string where_;
   Trace& trace_;
   NotRead& not_read_;

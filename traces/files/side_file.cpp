@@ -20,7 +20,7 @@ fs::path side_file(const JsonCursor& at, const fs::path& trace_file, bool allow_
   const fs::path path = fs::weakly_canonical(folder / named, error);
   if (error) at.fail("a path that can be followed", in_quotes(named.string()) + ": " + error.message());
   if (!allow_outside && (named.is_absolute() || !is_inside(path, fs::canonical(folder)))) {
-    at.fail("a path that stays in the trace's folder");
+    at.fail("a path that stays in the trace's folder (--allow-outside allows others)");
   }
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) at.fail("an existing file");

@@ -193,7 +193,9 @@ Form<Mesh> obj_form(Reader& reader) {
        true, form::text().schema, [&reader](const JsonCursor& at, Mesh& mesh) {
          NotRead not_read;
          const ObjMaterials wanted = reader.version == 1 ? ObjMaterials::none : ObjMaterials::textured;
-         read_obj(side_file(at, reader.file, reader.options.allow_outside), at.where(), wanted, reader.trace, not_read);
+         const bool allow_outside = reader.options.allow_outside;
+         read_obj(side_file(at, reader.file, allow_outside),
+                  {.materials = wanted, .follow_links = allow_outside, .named_by = at.where()}, reader.trace, not_read);
          const std::string name = mesh.name;
          mesh = std::move(reader.trace.meshes.back());
          mesh.name = name;

@@ -62,7 +62,7 @@ TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "") << "progress is shown on terminals only";
+  EXPECT_EQ(outcome.err, "beampipe: stopped; no frame is complete\n") << "progress is shown on terminals only";
   EXPECT_EQ(folder_.list(), (Names{"out/", "out/msaa_1/", "out/msaa_1/frame_0000.exr", "out/msaa_1/frame_0000.png",
                                    "out/msaa_1/frame_0000_counters.exr", "trace.json"}));
   EXPECT_EQ(read_exr(folder_ / "out/msaa_1/frame_0000.exr").width, 20u);
@@ -94,7 +94,9 @@ TEST_F(ProgramTest, CtrlCEndsALargeFileAtOnce) {
   Program program({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});
   wait_until([&] { return folder_.list() != Names{"trace.json"}; });
   program.signal(SIGINT);
-  EXPECT_EQ(program.wait().exit_code, 130);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_EQ(outcome.err, "beampipe: stopped\n");
   EXPECT_EQ(folder_.list(), Names{"trace.json"});
 }
 

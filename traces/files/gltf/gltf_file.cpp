@@ -150,7 +150,7 @@ void check_types(const Json& json, const Json& root, const std::string& where) {
 
 // Reads what tinygltf asks for.
 struct NamedFiles {
-  const fs::path& model;
+  const ModelFolder& folder;
   const std::string& where;
   std::string error;  // why a file could not be read
 };
@@ -158,7 +158,7 @@ struct NamedFiles {
 bool read_named_file(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user_data) {
   auto& files = *static_cast<NamedFiles*>(user_data);
   try {
-    const std::string bytes = read_file_beside(files.model, name, files.where);
+    const std::string bytes = files.folder.read(name, files.where);
     out->assign(bytes.begin(), bytes.end());
     return true;
   } catch (const TraceError& failure) {
@@ -210,9 +210,9 @@ std::size_t checked_index(int index, std::size_t count, const std::string& where
   return static_cast<std::size_t>(index);
 }
 
-GltfFile read_gltf_file(const fs::path& path, NotRead& not_read) {
-  GltfFile file{path, path.string(), {}};
-  const std::string bytes = read_input_file(path, file.where);
+GltfFile read_gltf_file(const fs::path& path, bool follow_links, NotRead& not_read) {
+  const std::string bytes = read_input_file(path, path.string());
+  GltfFile file{ModelFolder(path, follow_links), path.string(), {}};
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
     fail_trace(file.where, "at most 4 GiB", std::to_string(bytes.size() >> 30) + " GiB");
   const bool is_binary = bytes.starts_with("glTF");
@@ -227,7 +227,7 @@ GltfFile read_gltf_file(const fs::path& path, NotRead& not_read) {
 
   check_extensions(root, file.where, not_read);
 
-  NamedFiles files{file.path, file.where, ""};
+  NamedFiles files{file.folder, file.where, ""};
   tinygltf::TinyGLTF reader;
   reader.SetFsCallbacks({.FileExists = [](const std::string&, void*) { return true; },
                          .ExpandFilePath = [](const std::string& name, void*) { return name; },

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "traces/files/model_folder.h"
 #include "traces/files/model_import.h"
 
 namespace beampipe {
@@ -14,7 +15,7 @@ namespace beampipe {
 // The parsed file with its buffers, and its images as the bytes of their files (tinygltf::Image::image), unless these
 // are in a buffer. Files that it names must be in its folder.
 struct GltfFile {
-  std::filesystem::path path;
+  ModelFolder folder;
   std::string where;  // how messages start
   tinygltf::Model model;
 
@@ -25,7 +26,7 @@ struct GltfFile {
 };
 
 // Throws TraceError if the file is no glTF 2, or requires an extension that is not read.
-GltfFile read_gltf_file(const std::filesystem::path& path, NotRead& not_read);
+GltfFile read_gltf_file(const std::filesystem::path& path, bool follow_links, NotRead& not_read);
 
 // Returns `index` as an index into a list of `count` elements. Throws TraceError if it is none.
 std::size_t checked_index(int index, std::size_t count, const std::string& where, const char* of_what);

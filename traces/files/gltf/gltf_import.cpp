@@ -26,7 +26,7 @@ class GltfImport {
  public:
   GltfImport(const std::filesystem::path& path, const GltfOptions& options)
       : options_(options),
-        file_(read_gltf_file(path, model_.not_read)),
+        file_(read_gltf_file(path, options.follow_links, model_.not_read)),
         nodes_(file_),
         materials_(file_, model_.trace, model_.not_read),
         budget_(file_.where) {}

@@ -246,7 +246,7 @@ std::uint32_t GltfMaterials::image(int index, const std::string& named_by) {
   } else if (!from.image.empty()) {
     image = decode_image(text_of(from.image.data(), from.image.size()), place);
   } else {  // tinygltf could not read the file, which is read again for the message
-    image = decode_image(read_file_beside(file_.path, from.uri, place), place);
+    image = decode_image(file_.folder.read(from.uri, place), place);
   }
   image.name = !from.name.empty() ? from.name : from.uri;
   return images_[index] = add_image(trace_, std::move(image), place);

@@ -1,0 +1,36 @@
+#include "traces/files/model_folder.h"
+
+#include "traces/files/input_file.h"
+#include "traces/files/json.h"
+
+namespace beampipe {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool leaves(const fs::path& relative) { return relative.empty() || *relative.begin() == ".."; }
+
+}  // namespace
+
+ModelFolder::ModelFolder(const fs::path& model, bool follow_links)
+    : named_(model.parent_path()), real_(fs::canonical(model).parent_path()), follow_links_(follow_links) {}
+
+fs::path ModelFolder::file(const std::string& name, const std::string& where) const {
+  const fs::path relative = fs::path(name).lexically_normal();
+  if (relative.is_absolute() || leaves(relative)) fail_trace(where, "a file in the model's folder", in_quotes(name));
+  const fs::path beside_name = named_ / relative;
+  if (follow_links_) return beside_name;
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(real_ / relative, error);
+  const bool is_only_beside_name = !fs::exists(path, error) && fs::exists(beside_name, error);
+  if (path.empty() || leaves(path.lexically_relative(real_)) || is_only_beside_name)
+    fail_trace(where, "a file in the model's folder (--follow-links allows others)",
+               in_quotes(name) + ", through a link");
+  return path;
+}
+
+std::string ModelFolder::read(const std::string& name, const std::string& where) const {
+  return read_input_file(file(name, where), where + ": " + name);
+}
+
+}  // namespace beampipe
