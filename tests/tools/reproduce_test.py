@@ -160,6 +160,19 @@ class Reproduce(unittest.TestCase):
         self.page.write_text("Prose.\n")
         self.assertEqual(self.run_it("--check").returncode, 1)
 
+    def test_sessions_print_what_stands_below_their_commands(self):
+        numbers = "$ printf 'a   b  c\\n1 2 3\\n\\n4 5 6\\n'\n"
+        for shown, missing in [("a b c\n1 2 3\n4 5 6\n", None), ("a b ...\n1 2   3\n...\n", None),
+                               ("...\n4 5 6\n", None), ("a b c\n1 2 7\n4 5 6\n", "1 2 7"), ("a b c\n...\n1 2\n", "1 2"),
+                               ("a b c\n4 5 6\n", "4 5 6"), ("a b c\n1 2 3\n", "the end")]:
+            self.page.write_text(f"```\n$ beampipe make 7 -o t.json\n\n{numbers}{shown}```\n")
+            found = self.run_it("--check")
+            self.assertEqual(found.returncode, 0 if missing is None else 1, found.stderr)
+            self.assertIn("page.md: 1 session checked" if missing is None else f"does not print: {missing}\n",
+                          found.stdout + found.stderr)
+        self.page.write_text("```\n$ beampipe fail\nno such scene\n```\n")
+        self.assertIn("no such scene", self.run_it().stderr)
+
     def test_a_linked_page_stays_a_link(self):
         target = self.folder / "target.md"
         target.write_text(block("", "beampipe make 7 -o t.json\nbeampipe show t.json"))
