@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/stored_colors.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/reference_raster.h"
@@ -16,6 +17,8 @@ constexpr int kTileSize = 4;     // px, as in the reference
 constexpr int kPositions = 256;  // where surfaces are compared
 
 enum Cause : std::size_t { leak, mask, order, interpenetration, tiny, mixed, rounding };
+
+double root_mean_square(const glm::dvec3& error) { return std::sqrt(glm::dot(error, error) / 3); }
 
 // A triangle in one pixel, or the background.
 struct PixelSurface {
@@ -168,6 +171,7 @@ class TileExplainer {
   // Both, and the bin, must outlive it.
   TileExplainer(const FrameContext& context, const Bin& bin, const Comparer& comparer)
       : is_by_depth_(!context.rop),
+        target_(context.frame.target),
         comparer_(comparer),
         background_(context.background),
         tile_(bin.tile),
@@ -183,9 +187,10 @@ class TileExplainer {
     surfaces_.emplace(fragments_, tile_.pixels());
   }
 
-  // `pixel`: its number in the tile. `error`: of its colour.
-  ExplainedPixel explain(std::size_t pixel, const PixelWeights& weights, const glm::dvec3& error) const {
-    const double length = std::sqrt(glm::dot(error, error) / 3);
+  // `pixel`: its number in the tile.
+  ExplainedPixel explain(std::size_t pixel, const PixelWeights& weights, const glm::dvec3& color,
+                         const glm::dvec3& reference) const {
+    const double length = root_mean_square(color - reference);
     if (!is_by_depth_) {
       ExplainedPixel unknown;
       unknown.causes[rounding] = length;
@@ -199,19 +204,22 @@ class TileExplainer {
     for (const PixelSurface& each : seen)
       explained.surfaces.push_back({each.triangle, each.weight, each.truth, each.color});
     find_transfers(seen, comparer_, explained.transfers);
-    if (length == 0) return explained;
+    const glm::dvec3 error = stored(target_, color) - stored(target_, reference);
+    const double stored_length = root_mean_square(error);
+    if (stored_length == 0) return explained;
     std::array<glm::dvec3, kErrorCauses.size()> errors{};
     for (const AreaTransfer& each : explained.transfers)
       errors[each.cause] += each.area * (seen[each.to].color - seen[each.from].color);
     errors[rounding] = error;
     for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
     for (std::size_t cause = 0; cause < errors.size(); ++cause)
-      explained.causes[cause] = glm::dot(errors[cause], error) / (3 * length);
+      explained.causes[cause] = length * glm::dot(errors[cause], error) / glm::dot(error, error);
     return explained;
   }
 
  private:
   const bool is_by_depth_;
+  const ColorTarget target_;
   const Comparer& comparer_;
   const glm::vec3 background_;
   const Tile tile_;
@@ -246,9 +254,9 @@ std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, cons
       const auto columns = static_cast<std::size_t>(tile.width());
       const std::size_t pixel = (static_cast<std::size_t>(tile.y0) + i / columns) * job.frame.width +
                                 static_cast<std::size_t>(tile.x0) + i % columns;
-      const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
-      if (error == glm::dvec3(0.0)) continue;
-      const ExplainedPixel explained = explainer.explain(i, weights[pixel], error);
+      const glm::dvec3 color = rgb(image, pixel), truth = rgb(reference, pixel);
+      if (color == truth) continue;
+      const ExplainedPixel explained = explainer.explain(i, weights[pixel], color, truth);
       for (std::size_t cause = 0; cause < found.size(); ++cause)
         (*found[cause])[i] = static_cast<float>(explained.causes[cause]);
     }
@@ -273,7 +281,7 @@ std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& fram
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const PixelColors& pixel = pixels[i];
       if (bin.tile.holds(pixel.at))
-        explained[i] = explainer.explain(bin.tile.index(pixel.at), pixel.weights, pixel.color - pixel.reference);
+        explained[i] = explainer.explain(bin.tile.index(pixel.at), pixel.weights, pixel.color, pixel.reference);
     }
   });
   return explained;

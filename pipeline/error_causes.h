@@ -11,12 +11,14 @@
 //   leak               the reference sees nothing of j
 //   mixed              a surface that was merged after both hides part of j, and i lost area instead of j
 //   mask               the outline between the two is in the wrong place, as far as mask positions tell
+// Where the target stores numbers that stand for sRGB, these are what adds up: the split is that of the stored colours,
+// scaled to the pixel's error.
 // If surfaces vary, all this holds for pictures and weights that are rendered with SurfaceColors::by_pixel: each
 // triangle has one colour in a pixel then, and the error is one of visibility.
 //
-// The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`. In
-// frames that need the API's order, where colours are products of what draws do, that is all of it, and pixels have no
-// surfaces.
+// The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`.
+// In frames that need the API's order, where colours are products of what draws do, that is all of it, and pixels have
+// no surfaces.
 //
 // Depths are compared at 256 exact positions. At equal depth the earlier triangle counts as nearer.
 #pragma once
@@ -44,7 +46,7 @@ std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, cons
 struct ExplainedSurface {
   std::uint32_t triangle;
   double weight, truth;
-  glm::dvec3 color;  // linear RGB
+  glm::dvec3 color;  // as the frame's target stores it (pipeline/stored_colors.h)
 };
 
 // An area that one surface lost and another gained.

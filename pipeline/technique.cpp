@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "pipeline/stored_colors.h"
 #include "pipeline/technique_table.h"
 #include "traces/closest_name.h"
-#include "traces/srgb.h"
 
 namespace beampipe {
 namespace {
@@ -40,18 +40,14 @@ SpecOption variant_option(const Variant& chosen, const std::vector<const Techniq
   return option;
 }
 
-// From the numbers that the frame's target stores.
-void decode(Image& image) {
-  for (std::size_t i = 0; i < image.rgba.size(); ++i)
-    if (i % 4 != 3) image.rgba[i] = static_cast<float>(linear_of_srgb(image.rgba[i]));
-}
-
 }  // namespace
 
 FrameResult Technique::render(const Trace& trace, std::size_t frame, const FrameInput& run,
                               const FrameSinks& sinks) const {
   FrameResult result = renderer(trace, frame, run, sinks);
-  if (trace.frames[frame].target == ColorTarget::unorm) decode(result.image);
+  if (const ColorTarget target = trace.frames[frame].target; target == ColorTarget::unorm)
+    for (std::size_t i = 0; i < result.image.rgba.size(); ++i)
+      if (i % 4 != 3) result.image.rgba[i] = shown(target, result.image.rgba[i]);
   return result;
 }
 

@@ -25,7 +25,8 @@ enum class Fate {
   speck_hidden,  // it covers no mask position and was not added
   owner,         // it took positions
   composed,      // it was merged into the pixel's aggregate, which has no owners
-  blended,       // it is translucent and was blended with what lay behind it
+  stored,        // its colour took the place of what was there, in the API's order
+  blended,       // it was blended with what lay behind it, or was there before
 };
 
 // Positions that went from one fragment to another. kNobody: they were empty.
@@ -53,7 +54,7 @@ struct HeldSurface {
   std::vector<std::uint32_t> fragments;  // indices into PixelHistory::fragments
   std::uint32_t positions = 0;
   double area = 0;     // part of the pixel, 0..1, where it is known
-  glm::vec3 color{0};  // linear RGB
+  glm::vec3 color{0};  // as the frame's target stores it: linear RGB, unless that is `unorm`; so are the following
 };
 
 struct HistoryStep {
@@ -72,12 +73,12 @@ struct HistoryStep {
 struct HistoryTerm {
   std::uint32_t fragment;  // kNobody: the background
   double weight;
-  glm::dvec3 color;  // linear RGB
+  glm::dvec3 color;
 };
 
 // Of a pixel whose area and colour are known in two ways: what each says, and the result.
 struct PixelEstimates {
-  glm::dvec4 analytic, counted, result;  // linear RGB times area, and area
+  glm::dvec4 analytic, counted, result;  // colour times area, and area
 };
 
 // The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
@@ -100,7 +101,7 @@ struct PixelHistory {
   std::vector<std::uint32_t> owners = {};  // of each position at the end: a fragment or kNobody
   std::vector<HistoryTerm> terms = {};
   std::optional<PixelEstimates> estimates = {};
-  glm::vec4 pixel{0};  // as in the technique's picture
+  glm::vec4 pixel{0};
 
   // The terms' sum and, to the bit, what it lacks of `pixel`: 0 where the sum rounds to it. That is what formats of
   // colours and limits have changed.

@@ -278,18 +278,21 @@ void PixelObserver::blends(std::uint32_t triangle, std::size_t position, double 
   behind_layers_.resize(history.positions.size(), 1.0);
   for (HistoryTerm& layer : layers_[position]) layer.weight *= kept;
   behind_layers_[position] *= kept;
-  layers_[position].push_back({blended_fragment(triangle, position), added, color});
+  const std::uint32_t fragment = fragment_of(triangle);
+  const bool is_blended = kept != 0 || history.fragments[fragment].fate == Fate::blended;
+  layers_[position].push_back(
+      {drawn_fragment(triangle, position, is_blended ? Fate::blended : Fate::stored), added, color});
 }
 
 void PixelObserver::goes_over(std::uint32_t triangle, std::size_t position, double alpha, const glm::dvec3& color) {
   scales(1 - alpha);
-  add_term(blended_fragment(triangle, position), alpha, color);
+  add_term(drawn_fragment(triangle, position, Fate::blended), alpha, color);
 }
 
-std::uint32_t PixelObserver::blended_fragment(std::uint32_t triangle, std::size_t position) {
+std::uint32_t PixelObserver::drawn_fragment(std::uint32_t triangle, std::size_t position, Fate fate) {
   const std::uint32_t fragment = fragment_of(triangle);
   HistoryFragment& noted = history.fragments[fragment];
-  noted.fate = Fate::blended;
+  noted.fate = fate;
   noted.mask.resize(history.positions.size());
   noted.mask[position] = true;
   return fragment;

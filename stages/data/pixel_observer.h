@@ -129,7 +129,8 @@ class PixelObserver {
     double area, counted;
   };
 
-  std::uint32_t blended_fragment(std::uint32_t triangle, std::size_t position);  // notes that it was blended there
+  std::uint32_t drawn_fragment(std::uint32_t triangle, std::size_t position,
+                               Fate fate);  // notes that it was drawn there
   void take(std::size_t position, std::uint32_t fragment);
   void misses(std::size_t position, std::uint32_t fragment);
   std::size_t surface_at(const WideMask& positions, const glm::vec3& color);

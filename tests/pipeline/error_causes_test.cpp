@@ -73,6 +73,37 @@ TEST(ErrorCauses, PartsAddUpToEachPixelsError) {
   }
 }
 
+// In a frame whose target stores sRGB, codes add up, and not the linear colours of pictures.
+TEST(ErrorCauses, StoredColoursAreWhatWeightsAddUpTo) {
+  Trace trace = random_trace(40, 24, 150, 7);
+  trace.frames[0].target = ColorTarget::unorm;
+  for (const char* spec : {"beam", "msaa:8", "casav"}) {
+    const Explained found = explain(spec, trace);
+    double all = 0, rounding = 0;
+    for (std::size_t i = 0; i < found.error.size(); ++i) {
+      double sum = 0;
+      for (const auto& [cause, layer] : found.layers) sum += layer.at(i);
+      ASSERT_NEAR(sum, found.error[i], 1e-6) << spec << ", pixel " << i;
+      all += found.error[i] * found.error[i];
+      rounding += found.error[i] * found.layers.at("rounding").at(i);
+    }
+    EXPECT_LT(std::abs(rounding), 0.02 * all) << spec;
+  }
+}
+
+// Half of the pixel is white, and half black; the middle code is not the middle light.
+TEST(ErrorCauses, AHalfThatIsMissingIsTheErrorOfItsLight) {
+  std::vector<PixelSpaceTriangle> triangles;
+  add_column(triangles, 0, 0.5, 0.5, 0, glm::vec3(1));
+  Trace trace = pixel_trace(1, 1, triangles, glm::vec3(0));
+  trace.frames[0].target = ColorTarget::unorm;
+  const Explained found = explain("msaa:1", trace);  // the sample at the centre has the half or not
+  const double half = std::pow((0.5 + 0.055) / 1.055, 2.4);
+  EXPECT_TRUE(std::abs(found.error[0] - half) < 1e-3 || std::abs(found.error[0] - (1 - half)) < 1e-3)
+      << found.error[0];
+  EXPECT_NEAR(part(found, "mask") + part(found, "leak"), 1, 1e-2);
+}
+
 TEST(ErrorCauses, TheBackgroundLeaksThroughTwoTrianglesThatOverTakesForIndependent) {
   std::vector<PixelSpaceTriangle> triangles;
   add_column(triangles, 0, 1, 0.5, 0, kRed);

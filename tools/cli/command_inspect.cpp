@@ -36,7 +36,9 @@ constexpr const char* kInspectFooter =
   Weights     the part of the pixel that each triangle has, and should have by the reference
   Where the area went   which surface gained or lost how much, by the causes of `beampipe compare --causes`
 Triangles are numbered as `beampipe export-soup` writes them. Weights times colours, plus what formats and limits
-changed, are the bits of the picture that `beampipe run` writes.
+changed, are the bits of the picture that `beampipe run` writes. Captured frames store sRGB: there they are the bits of
+what is stored. Where draws keep the API's order, weights are what each has put into the pixel in the end; there are none
+of the reference, and no causes.
 
 Examples:
   beampipe inspect fence.json --pixel 160,90 -t beam msaa:8

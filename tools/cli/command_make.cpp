@@ -108,7 +108,7 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   {
     const auto held = gate.hold();
-    gate.set_unfinished(AtomicFile::temporary_of(file));
+    gate.set_unfinished({AtomicFile::temporary_of(file), AtomicFile::temporary_of(arrays_file_of(file))});
   }
   write_trace(trace, file, arguments.binary ? ArrayStorage::binary : ArrayStorage::text);
   std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "

@@ -60,7 +60,7 @@ void save_trace(const HardCase& hard_case, const std::filesystem::path& folder, 
   {
     const auto held = gate.hold();
     std::filesystem::create_directories(folder);
-    gate.set_unfinished(AtomicFile::temporary_of(file));
+    gate.set_unfinished({AtomicFile::temporary_of(file)});
   }
   write_trace(hard_case.trace, file);
 }

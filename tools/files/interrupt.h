@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace beampipe {
 
@@ -23,9 +24,9 @@ class InterruptGate {
 
   std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
-  // Names the file that is being written, or none if `file` is empty. An interrupt removes that file before it ends the
-  // program. The caller must hold the gate.
-  void set_unfinished(std::filesystem::path file) { unfinished_ = std::move(file); }
+  // Names the files that are being written. An interrupt removes them before it ends the program. The caller must hold
+  // the gate.
+  void set_unfinished(std::vector<std::filesystem::path> files) { unfinished_ = std::move(files); }
 
   // What an interrupt says on standard error after "stopped", before it ends the program: what is kept and how to go
   // on; nothing if empty. The caller must hold the gate.
@@ -35,7 +36,7 @@ class InterruptGate {
   void wait_for_signal();
 
   std::mutex mutex_;
-  std::filesystem::path unfinished_;
+  std::vector<std::filesystem::path> unfinished_;
   std::string kept_;
   std::atomic<bool> closing_ = false;
   sigset_t signals_, previous_mask_;

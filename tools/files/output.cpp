@@ -105,7 +105,7 @@ void OutputFolder::write(const fs::path& name, const std::function<void(const Wr
   make(target.parent_path());
   const bool is_new = !fs::exists(target);
   AtomicFile file(target);
-  gate_.set_unfinished(AtomicFile::temporary_of(target));
+  gate_.set_unfinished({AtomicFile::temporary_of(target)});
   held.unlock();  // writing a large file takes longer than Ctrl-C may wait
   content([&](std::string_view bytes) { file.write(bytes); });
   file.flush();

@@ -36,7 +36,7 @@ class TextStream::Gzip {
 TextStream::TextStream(const std::filesystem::path& file, InterruptGate& gate) : gate_(gate) {
   const auto held = gate_.hold();
   file_.emplace(file);
-  gate_.set_unfinished(AtomicFile::temporary_of(file));
+  gate_.set_unfinished({AtomicFile::temporary_of(file)});
   if (file.extension() == ".gz") gzip_ = std::make_unique<Gzip>();
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "pipeline/spec.h"
+#include "pipeline/stored_colors.h"
 #include "pipeline/technique_table.h"
 #include "stages/geometry/vertex_setup.h"
 #include "tools/evaluate/known_specs.h"
@@ -51,6 +53,13 @@ void add_explanation(const ExplainedPixel& explained, PixelInspection& inspectio
   std::stable_sort(inspection.transfers.begin(), inspection.transfers.end(),
                    [&](const AreaTransfer& a, const AreaTransfer& b) { return effect(a) > effect(b); });
   inspection.causes.assign(explained.causes.begin(), explained.causes.end());
+  if (!explained.surfaces.empty()) return;
+  // Draws keep the API's order: there is what each fragment has put into the pixel in the end, and nothing to compare
+  // it with.
+  std::map<std::uint32_t, double> weights;  // by fragment; the background's number is the greatest
+  for (const HistoryTerm& term : history.terms) weights[term.fragment] += term.weight;
+  for (const auto& [fragment, weight] : weights)
+    inspection.surfaces.push_back({fragment, weight, std::nullopt, mean_color(history, fragment, glm::dvec3(0.0))});
 }
 
 std::vector<PixelHistory> observed(const Technique& technique, const Trace& trace, std::size_t frame,
@@ -109,10 +118,13 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
     for (const HistoryFragment& each : history.fragments)
       inspection.draw_names.push_back(std::to_string(each.draw) + " '" +
                                       trace.meshes[of_trace.draws[each.draw].mesh].name + "'");
+    inspection.target = of_trace.target;
+    inspection.picture = shown(of_trace.target, glm::vec3(history.pixel));
     inspection.reference = glm::vec3(color_at(truth, pixels[i]));
-    inspection.error = root_mean_square(glm::dvec3(history.pixel) - glm::dvec3(inspection.reference));
+    inspection.error = root_mean_square(glm::dvec3(inspection.picture) - glm::dvec3(inspection.reference));
     const PixelHistory& seen = varies ? visible[i] : history;
-    colors.push_back({pixels[i], seen.weights(), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
+    colors.push_back({pixels[i], seen.weights(), shown(of_trace.target, glm::vec3(seen.pixel)),
+                      glm::vec3(color_at(visible_truth, pixels[i]))});
     if (varies) inspection.visibility_error = root_mean_square(colors.back().color - colors.back().reference);
   }
   const std::vector<ExplainedPixel> explained = explain_pixels(trace, of_trace, colors, varies ? by_pixel : only);

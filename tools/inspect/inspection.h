@@ -1,6 +1,7 @@
 // A pixel explained: its history (stages/data/pixel_history.h), how wrong it is, and why.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,18 +15,23 @@ namespace beampipe {
 
 // A triangle, or the background, that the technique or the reference sees in the pixel.
 struct InspectedSurface {
-  std::uint32_t fragment;  // index into the history's fragments; kNobody: the background
-  double weight, truth;    // part of the pixel by the technique and by the reference
-  glm::dvec3 color;        // linear RGB: the mean of the terms' or, without terms, of the explanation's
+  std::uint32_t fragment;       // index into the history's fragments; kNobody: the background
+  double weight;                // part of the pixel by the technique
+  std::optional<double> truth;  // by the reference; not known where draws keep the API's order
+  glm::dvec3 color;             // the mean of the terms' or, without terms, of the explanation's
+
+  double largest_part() const { return std::max(weight, truth.value_or(0)); }
 };
 
+// Colours of the history and of surfaces are as the frame's target stores them (pipeline/stored_colors.h).
 struct PixelInspection {
   std::string technique;
   std::size_t frame = 0;
   PixelHistory history;
   std::vector<std::string> draw_names;  // one per fragment of the history: "0 'fence'"
-  glm::vec3 reference{0};               // of the same pixel
-  double error = 0;                     // root mean square over R, G and B
+  ColorTarget target{};
+  glm::vec3 picture{0}, reference{0};  // the pixel in both pictures, linear RGB
+  double error = 0;                    // root mean square over R, G and B
   // Where surfaces vary, the part that is left when the technique and the reference give each triangle one colour.
   std::optional<double> visibility_error;
   std::vector<InspectedSurface> surfaces;  // those that have a part of the pixel; the background comes last

@@ -18,11 +18,11 @@ Form<std::uint32_t> fragment_form() {
 }
 
 Form<std::vector<PositionMove>> moves_form() {
-  return form::list(Form<PositionMove>(
-      ObjectForm<PositionMove>()
-          .written("fragment", &PositionMove::fragment, fragment_form(),
-                   "The other fragment: its index in \"fragments\". Null: the background.")
-          .written("positions", &PositionMove::positions, form::count(), "So many.")));
+  return form::list(
+      Form<PositionMove>(ObjectForm<PositionMove>()
+                             .written("fragment", &PositionMove::fragment, fragment_form(),
+                                      "The other fragment: its index in \"fragments\". Null: the background.")
+                             .written("positions", &PositionMove::positions, form::count(), "So many.")));
 }
 
 Form<HeldSurface> held_form() {
@@ -35,8 +35,9 @@ Form<HeldSurface> held_form() {
 
 Form<HistoryStep> step_form() {
   return ObjectForm<HistoryStep>()
-      .written("step", [](const HistoryStep& step) { return kSteps[static_cast<std::size_t>(step.kind)]; },
-               form::one_of({std::begin(kSteps), std::end(kSteps)}), "What it did.")
+      .written(
+          "step", [](const HistoryStep& step) { return kSteps[static_cast<std::size_t>(step.kind)]; },
+          form::one_of({std::begin(kSteps), std::end(kSteps)}), "What it did.")
       .written("after_fragment", &HistoryStep::after_fragment, fragment_form(),
                "The fragment that made it do so: its index in \"fragments\". Null: the background.")
       .written("before", &HistoryStep::before, form::list(held_form()), "The surfaces before it.")
@@ -73,13 +74,13 @@ Form<NamedFragment> named_form() {
       .written("corners", corners, form::list(form::vector<glm::dvec2>()),
                "Of the part of the triangle in the picture, in pixels.")
       .written("area", of(&Fragment::area), form::number(0, 1), "Exact part of the pixel that it covers.")
-      .written("depth", depth, form::vector<glm::vec2>(),
-               "The bounds of its depth in the pixel, the nearest first.")
+      .written("depth", depth, form::vector<glm::vec2>(), "The bounds of its depth in the pixel, the nearest first.")
       .written("front", of(&Fragment::is_front), form::boolean(), "It shows its front.")
       .written("mask", mask_text, form::text(),
                "The positions that it covers: 1 for each covered one, in the order of \"positions\".")
-      .written("fate", [](const NamedFragment& named) { return fate_text(named.fragment.fate); }, form::text(),
-               "What became of it.")
+      .written(
+          "fate", [](const NamedFragment& named) { return fate_text(named.fragment.fate); }, form::text(),
+          "What became of it.")
       .written("taken", of(&Fragment::taken), moves_form(), "Positions that it took, and from whom.")
       .written("lost", of(&Fragment::lost), moves_form(), "Positions that it covers and lost, and to whom.");
 }
@@ -102,15 +103,16 @@ Form<HistoryTerm> term_form() {
   return ObjectForm<HistoryTerm>()
       .written("fragment", &HistoryTerm::fragment, fragment_form(), "Whose it is. Null: the background's.")
       .written("weight", &HistoryTerm::weight, form::number(), "Part of the pixel.")
-      .written("color", &HistoryTerm::color, form::vector<glm::dvec3>(), "Linear RGB.");
+      .written("color", &HistoryTerm::color, form::vector<glm::dvec3>(), "Its colour, as stored.");
 }
 
 Form<InspectedSurface> surface_form() {
   return ObjectForm<InspectedSurface>()
       .written("fragment", &InspectedSurface::fragment, fragment_form(), "Which. Null: the background.")
       .written("weight", &InspectedSurface::weight, form::number(), "Part of the pixel by the technique.")
-      .written("reference_weight", &InspectedSurface::truth, form::number(), "Part of the pixel by the reference.")
-      .written("color", &InspectedSurface::color, form::vector<glm::dvec3>(), "Linear RGB.");
+      .written("reference_weight", &InspectedSurface::truth, form::number(),
+               "Part of the pixel by the reference; not where draws keep the API's order.")
+      .written("color", &InspectedSurface::color, form::vector<glm::dvec3>(), "Its colour, as stored.");
 }
 
 Form<AreaTransfer> transfer_form() {
@@ -118,8 +120,9 @@ Form<AreaTransfer> transfer_form() {
       .written("from_surface", &AreaTransfer::from, form::count(), "Index in \"surfaces\".")
       .written("to_surface", &AreaTransfer::to, form::count(), "Index in \"surfaces\".")
       .written("area", &AreaTransfer::area, form::number(), "Part of the pixel.")
-      .written("cause", [](const AreaTransfer& transfer) { return kErrorCauses[transfer.cause]; },
-               form::one_of({std::begin(kErrorCauses), std::end(kErrorCauses)}), "Why.");
+      .written(
+          "cause", [](const AreaTransfer& transfer) { return kErrorCauses[transfer.cause]; },
+          form::one_of({std::begin(kErrorCauses), std::end(kErrorCauses)}), "Why.");
 }
 
 std::vector<AreaTransfer> first_transfers(const PixelInspection& inspection) {
@@ -143,13 +146,20 @@ Form<PixelInspection> inspection_form() {
   return ObjectForm<Pixel>()
       .written("technique", &Pixel::technique, form::text("a spec"), "The spec.")
       .written("frame", &Pixel::frame, form::count(), "Index in the trace.")
-      .written("x", [](const Pixel& pixel) { return pixel.history.at.x; }, form::count(), "Column, from the left.")
-      .written("y", [](const Pixel& pixel) { return pixel.history.at.y; }, form::count(), "Row, from the top.")
+      .written(
+          "x", [](const Pixel& pixel) { return pixel.history.at.x; }, form::count(), "Column, from the left.")
+      .written(
+          "y", [](const Pixel& pixel) { return pixel.history.at.y; }, form::count(), "Row, from the top.")
       .written("order", of(&PixelHistory::order), form::text(), "In which the technique takes the fragments.")
       .written("has_samples", of(&PixelHistory::has_samples), form::boolean(),
                "Positions are samples with values of their own, and not bits of a mask.")
-      .written("color", of(&PixelHistory::pixel), form::vector<glm::vec4>(),
-               "Of the technique: linear RGB, and the part of the pixel that geometry covers.")
+      .written(
+          "color", [](const Pixel& pixel) { return glm::vec4(pixel.picture, pixel.history.pixel.a); },
+          form::vector<glm::vec4>(), "Of the technique: linear RGB, and the part of the pixel that geometry covers.")
+      .written(
+          "stored", [](const Pixel& pixel) { return glm::vec3(pixel.history.pixel); }, form::vector<glm::vec3>(),
+          "The same colour as the frame's target stores it. Colours of steps, estimates, terms and surfaces are of "
+          "this kind.")
       .written("reference", &Pixel::reference, form::vector<glm::vec3>(), "Of the reference, linear RGB.")
       .written("error", &Pixel::error, form::amount(), "Root mean square over R, G and B.")
       .written("visibility_error", &Pixel::visibility_error, form::amount(),
@@ -164,14 +174,16 @@ Form<PixelInspection> inspection_form() {
       .written("estimates", of(&PixelHistory::estimates), estimates_form(),
                "beam: the estimates of the pixel's colour.")
       .written("terms", of(&PixelHistory::terms), form::list(term_form()),
-               "Weights and colours whose sum of products, plus \"rest\", is the pixel's colour.")
-      .written("rest", [](const Pixel& pixel) { return pixel.history.rest(); }, form::vector<glm::dvec3>(),
-               "What formats and limits have changed.")
+               "Weights and colours whose sum of products, plus \"rest\", is the stored colour.")
+      .written(
+          "rest", [](const Pixel& pixel) { return pixel.history.rest(); }, form::vector<glm::dvec3>(),
+          "What formats and limits have changed.")
       .written("surfaces", &Pixel::surfaces, form::list(surface_form()), "Weights beside those of the reference.")
       .written("transfers", first_transfers, form::list(transfer_form()),
                "Area that went to a wrong surface; the 1000 with the most effect.")
-      .written("all_transfers", [](const Pixel& pixel) { return pixel.transfers.size(); }, form::count(),
-               "Their number, with those that are left out.")
+      .written(
+          "all_transfers", [](const Pixel& pixel) { return pixel.transfers.size(); }, form::count(),
+          "Their number, with those that are left out.")
       .written("causes", causes_of, form::as_it_is(form::by_name(form::number()).schema),
                "The error, or where surfaces vary its part in visibility, by cause.")
       .added("cause_shares", form::text().schema, "The causes in words. Only in files that `compare` writes.")

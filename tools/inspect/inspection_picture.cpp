@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "pipeline/stored_colors.h"
 #include "tools/files/format.h"
 #include "tools/files/image_io.h"
 #include "tools/inspect/inspection_text.h"
@@ -39,7 +40,7 @@ using ColorOf = std::map<std::uint32_t, const char*>;
 std::vector<InspectedSurface> largest_first(const PixelInspection& inspection) {
   std::vector<InspectedSurface> surfaces = inspection.surfaces;
   std::stable_sort(surfaces.begin(), surfaces.end(), [](const InspectedSurface& a, const InspectedSurface& b) {
-    return std::max(a.weight, a.truth) > std::max(b.weight, b.truth);
+    return a.largest_part() > b.largest_part();
   });
   return surfaces;
 }
@@ -56,6 +57,9 @@ const char* color_of(const ColorOf& colors, std::uint32_t fragment) {
   const auto found = colors.find(fragment);
   return found == colors.end() ? kOther : found->second;
 }
+
+// Without the sign of what rounds to 0.
+double without_small(double part) { return std::abs(part) < 5e-5 ? 0.0 : part; }
 
 std::string css_color(const glm::dvec3& linear) {
   const glm::vec3 color(linear);
@@ -113,7 +117,7 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
                         const ColorOf& colors, double top) {
   const double bars = kTextLeft + 190;
   double largest = 0;  // what a full bar stands for
-  for (const InspectedSurface& surface : surfaces) largest = std::max({largest, surface.weight, surface.truth});
+  for (const InspectedSurface& surface : surfaces) largest = std::max(largest, surface.largest_part());
   const auto length_of = [&](double part) { return kBarWidth * std::clamp(part / largest, 0.0, 1.0); };
   std::string svg =
       text_at(kTextLeft, top, "surface", "class=\"dim\"") +
@@ -125,21 +129,21 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
     const char* color = is_background ? "#444444" : color_of(colors, surface.fragment);
     svg +=
         rectangle(kTextLeft, y, 14, 14, format("fill=\"%s\"", is_background ? "#ffffff" : color) + " stroke=\"#666\"");
-    svg += rectangle(kTextLeft + 18, y, 14, 14, "fill=\"" + css_color(surface.color) + "\" stroke=\"#666\"");
+    const glm::vec3 swatch = shown(inspection.target, glm::vec3(surface.color));
+    svg += rectangle(kTextLeft + 18, y, 14, 14, "fill=\"" + css_color(swatch) + "\" stroke=\"#666\"");
     svg += text_at(kTextLeft + 38, y + 12,
                    is_background ? "background"
                                  : format("#%u, triangle %u", surface.fragment,
                                           inspection.history.fragments[surface.fragment].triangle));
-    const double truth = bars + length_of(surface.truth);
     svg += rectangle(bars, y + 1, kBarWidth, 12, "fill=\"#eeeeee\"");
     svg += rectangle(bars, y + 1, length_of(surface.weight), 12, format("fill=\"%s\"", color));
+    svg += text_at(bars + kBarWidth + 8, y + 12, format("%.4f", without_small(surface.weight)));
+    if (!surface.truth) continue;
+    const double truth = bars + length_of(*surface.truth);
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#000\" stroke-width=\"2\"/>\n", truth,
                   truth, y - 1, y + 15);
-    svg +=
-        text_at(bars + kBarWidth + 8, y + 12, format("%.4f", std::abs(surface.weight) < 5e-5 ? 0.0 : surface.weight)) +
-        text_at(bars + kBarWidth + 58, y + 12,
-                format("%+.4f", std::abs(surface.weight - surface.truth) < 5e-5 ? 0.0 : surface.weight - surface.truth),
-                "class=\"dim\"");
+    svg += text_at(bars + kBarWidth + 58, y + 12, format("%+.4f", without_small(surface.weight - *surface.truth)),
+                   "class=\"dim\"");
   }
   if (surfaces.size() > kMostSurfaces)
     svg += text_at(kTextLeft + 38, top + 24 + kRow * kMostSurfaces,
@@ -150,7 +154,7 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
 std::string colors_text(const PixelInspection& inspection, double y) {
   std::string svg;
   const std::array<std::pair<const char*, glm::dvec3>, 2> colors = {
-      {{"picture", glm::dvec3(inspection.history.pixel)}, {"reference", glm::dvec3(inspection.reference)}}};
+      {{"picture", glm::dvec3(inspection.picture)}, {"reference", glm::dvec3(inspection.reference)}}};
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const auto& [name, color] = colors[i];
     const double x = kTextLeft + 250 * static_cast<double>(i);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "pipeline/wrapped_text.h"
 #include "tools/files/format.h"
@@ -155,9 +156,10 @@ std::string head_text(const PixelInspection& inspection, const std::string& trac
       put_line("pixel " + std::to_string(history.at.x) + "," + std::to_string(history.at.y) + " of " + trace +
                    ", frame " + std::to_string(inspection.frame) + ", with " + inspection.technique,
                2);
-  text += format("%zu triangles touch it, in this order: %s. It has %zu %s.\n\n", history.fragments.size(),
-                 history.order.c_str(), history.positions.size(), unit_of(history).c_str());
-  const glm::dvec3 color(history.pixel), truth(inspection.reference), error = color - truth;
+  const std::size_t touching = history.fragments.size();
+  text += format("%zu triangle%s touch%s it, in this order: %s. It has %zu %s.\n\n", touching, touching == 1 ? "" : "s",
+                 touching == 1 ? "es" : "", history.order.c_str(), history.positions.size(), unit_of(history).c_str());
+  const glm::dvec3 color(inspection.picture), truth(inspection.reference), error = color - truth;
   text += format("  picture     %s   covered %.4f\n", color_text(color).c_str(), history.pixel.a);
   text += format("  reference   %s\n", color_text(truth).c_str());
   text +=
@@ -256,18 +258,22 @@ std::string bar(double part, bool unicode) {
 
 std::string weights_text(const PixelInspection& inspection, bool unicode) {
   const PixelHistory& history = inspection.history;
-  std::string text = format("Weights: parts of the pixel\n  %-10s %9s %10s %9s  %-22s %-20s\n", "surface", "weight",
+  const bool is_encoded = inspection.target == ColorTarget::unorm;
+  std::string text = format("Weights: parts of the pixel%s\n  %-10s %9s %10s %9s  %-22s %-20s\n",
+                            is_encoded ? ", and colours as the target stores them" : "", "surface", "weight",
                             "reference", "error", "colour", "weight");
   std::vector<InspectedSurface> surfaces = inspection.surfaces;
   std::stable_sort(surfaces.begin(), surfaces.end(), [](const InspectedSurface& a, const InspectedSurface& b) {
-    return std::max(a.weight, a.truth) > std::max(b.weight, b.truth);
+    return a.largest_part() > b.largest_part();
   });
   constexpr std::size_t kMost = 40;
   for (std::size_t i = 0; i < std::min(surfaces.size(), kMost); ++i) {
     const InspectedSurface& surface = surfaces[i];
-    text += format("  %-10s %9.5f %10.5f %+9.5f  %-22s ", name_of(surface.fragment).c_str(),
-                   unsigned_zero(surface.weight), unsigned_zero(surface.truth),
-                   unsigned_zero(surface.weight - surface.truth), color_text(surface.color).c_str()) +
+    const std::optional<double>& truth = surface.truth;
+    const std::string compared =
+        truth ? format("%10.5f %+9.5f", unsigned_zero(*truth), unsigned_zero(surface.weight - *truth)) : "";
+    text += format("  %-10s %9.5f %20s  %-22s ", name_of(surface.fragment).c_str(), unsigned_zero(surface.weight),
+                   compared.c_str(), color_text(surface.color).c_str()) +
             bar(surface.weight, unicode);
     text = text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   }
@@ -280,7 +286,11 @@ std::string weights_text(const PixelInspection& inspection, bool unicode) {
   const glm::dvec3 sum = history.sum(), rest = history.rest();
   text += "  sum of weight x colour  " + color_text(sum) + "\n";
   text += format("  formats and limits     %+.4f %+.4f %+.4f\n", rest.r, rest.g, rest.b);
-  text += format("  picture, to the bit     %.9g %.9g %.9g\n", history.pixel.r, history.pixel.g, history.pixel.b);
+  const auto put_bits = [&text](const char* name, const auto& color) {
+    text += format("  %s, to the bit     %.9g %.9g %.9g\n", name, color.r, color.g, color.b);
+  };
+  if (is_encoded) put_bits("stored", history.pixel);
+  put_bits(is_encoded ? "linear" : "picture", inspection.picture);
   return text;
 }
 
@@ -306,6 +316,8 @@ std::string fate_text(Fate fate) {
       return "owner";
     case Fate::composed:
       return "composed";
+    case Fate::stored:
+      return "drawn over what was there";
     case Fate::blended:
       break;
   }
@@ -346,7 +358,8 @@ std::string step_text(const HistoryStep& step, const PixelHistory& history) {
 
 std::string cause_shares_text(const PixelInspection& inspection) {
   const double error = inspection.visibility_error.value_or(inspection.error);
-  if (error == 0) return "";
+  const bool is_explained = std::ranges::any_of(inspection.surfaces, [](const auto& each) { return each.truth.has_value(); });
+  if (error == 0 || !is_explained) return "";
   std::vector<std::size_t> order(inspection.causes.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

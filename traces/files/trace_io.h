@@ -33,6 +33,9 @@ enum class ArrayStorage {
   binary,  // in a file beside it, whose name ends in .bin: a fifth of the size, and faster to read
 };
 
+// The binary file beside a trace.
+std::filesystem::path arrays_file_of(const std::filesystem::path& trace);
+
 // Writes a trace with its images inline; read_trace() gives back the same bits. The version is 1 if that can express
 // the trace, else 2. A frame with a camera is written with it in place of its view and projection. The files appear
 // under their names when they are complete, the trace last. Throws std::runtime_error, with one line, and leaves the

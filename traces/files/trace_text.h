@@ -26,7 +26,7 @@ class TraceText {
   TraceText(const std::filesystem::path& file, ArrayStorage storage) : name_(file.string()), file_(file) {
     if (storage == ArrayStorage::text) return;
     if (file.extension() == ".bin") fail("its name ends in .bin, as that of the binary file beside it would");
-    arrays_.emplace(std::filesystem::path(file).replace_extension(".bin"));
+    arrays_.emplace(arrays_file_of(file));
   }
 
   [[noreturn]] void fail(const std::string& what) const {

@@ -309,6 +309,10 @@ class TraceWriter : TraceText {
 
 }  // namespace
 
+std::filesystem::path arrays_file_of(const std::filesystem::path& trace) {
+  return std::filesystem::path(trace).replace_extension(".bin");
+}
+
 void write_trace(const Trace& trace, const std::filesystem::path& file, ArrayStorage storage) {
   TraceWriter(file, storage).write(trace);
 }

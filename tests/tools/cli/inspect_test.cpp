@@ -31,12 +31,12 @@ class InspectTest : public ProgramTest {
   Parsed inspected(const Names& pixels, const std::string& frame = "0", const std::string& threads = "2") {
     const Names arguments = {"inspect", path("trace.json"), "--json", "--frame",
                              frame,     "--threads",        threads,  "--pixel"};
-    return Parsed::parse(succeed(joined(joined(arguments, pixels), joined({"-t"}, kSpecs))))["pixels"];
+    return Parsed::parse(succeed(joined(joined(arguments, pixels), joined({"-t"}, specs_))))["pixels"];
   }
 
   // Expects that weights times colours, as the JSON says them, are the pixels of the pictures that `run` writes.
   void expect_pictures(const Parsed& pixels, const std::string& frame) {
-    succeed(joined({"run", path("trace.json"), "--frames", frame, "-o", path("out"), "-t"}, kSpecs));
+    succeed(joined({"run", path("trace.json"), "--frames", frame, "-o", path("out"), "-t"}, specs_));
     for (const Parsed& pixel : pixels) {
       const Image image = read_exr(folder_ / "out" / spec_folder(pixel["technique"].get<std::string>()) /
                                    ("frame_000" + frame + ".exr"));
@@ -46,10 +46,14 @@ class InspectTest : public ProgramTest {
         double sum = 0;
         for (const Parsed& term : pixel["terms"]) sum += term["weight"].get<double>() * term["color"][c].get<double>();
         sum += pixel["rest"][c].get<double>();
-        EXPECT_EQ(static_cast<float>(sum), image.rgba[at + c]) << "channel " << c;
+        EXPECT_EQ(static_cast<float>(sum), pixel["stored"][c].get<float>()) << "channel " << c;
         EXPECT_EQ(pixel["color"][c].get<float>(), image.rgba[at + c]);
+        const double stored = pixel["stored"][c];
+        const double linear = stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
+        EXPECT_NEAR(pixel["color"][c].get<double>(), is_encoded_ ? linear : stored, 1e-7);
       }
       EXPECT_EQ(pixel["color"][3].get<float>(), image.rgba[at + 3]) << "alpha";
+      if (!is_by_depth_) continue;  // the reference's weights are not known
       double weight = 0, truth = 0;
       for (const Parsed& surface : pixel["surfaces"])
         weight += surface["weight"].get<double>(), truth += surface["reference_weight"].get<double>();
@@ -60,6 +64,17 @@ class InspectTest : public ProgramTest {
       EXPECT_NEAR(causes, pixel.value("visibility_error", pixel["error"].get<double>()), 1e-6);
     }
   }
+
+  // Changes each frame of the trace.
+  void change_frames(const std::function<void(Parsed&)>& change) {
+    Parsed trace = Parsed::parse(read_text(folder_ / "trace.json"));
+    trace["beampipe_trace"] = 2;
+    for (Parsed& frame : trace["frames"]) change(frame);
+    write_text(folder_ / "trace.json", trace.dump());
+  }
+
+  Names specs_ = kSpecs;
+  bool is_encoded_ = false, is_by_depth_ = true;
 };
 
 void expect_readable(const std::string& text) {
@@ -82,6 +97,33 @@ TEST_F(InspectTest, TextTellsWhoOwnsThePixel) {
 
 TEST_F(InspectTest, WeightsTimesColoursAreThePicture) {
   expect_pictures(inspected({"10,9", "3,3", "12,8", "0,0"}), "0");
+}
+
+TEST_F(InspectTest, WeightsTimesStoredColoursAreTheStoredPicture) {
+  change_frames([](Parsed& frame) { frame["target"] = "unorm"; });
+  is_encoded_ = true;
+  const Parsed pixels = inspected({"10,9", "3,3", "12,8", "0,0"});
+  expect_pictures(pixels, "0");
+  for (const Parsed& pixel : pixels)
+    EXPECT_LE(std::abs(pixel["causes"].value("rounding", 0.0)), 0.1 * double(pixel["error"]) + 1e-3);
+}
+
+// The green triangle is added to what is there, wherever that is.
+TEST_F(InspectTest, InTheApisOrderWeightsAreWhatDrawsHavePutIntoThePixel) {
+  change_frames([](Parsed& frame) {
+    for (Parsed& draw : frame["draws"])
+      if (draw["mesh"] == "green")
+        draw["state"] = {{"depth_test", false}, {"blend", {{"source", "one"}, {"destination", "one"}}}};
+  });
+  is_by_depth_ = false;
+  specs_ = {"beam", "msaa:4"};
+  const Parsed pixels = inspected({"10,7", "5,4"});
+  expect_pictures(pixels, "0");
+  for (const Parsed& surface : pixels[0]["surfaces"]) EXPECT_FALSE(surface.contains("reference_weight"));
+  EXPECT_EQ(pixels[0]["surfaces"].size(), pixels[0]["fragments"].size() + 1) << "the background, too";
+  const std::string text = succeed({"inspect", path("trace.json"), "--pixel", "10,7", "-t", "msaa:4"});
+  EXPECT_NE(text.find("blended"), text.npos) << text;
+  EXPECT_EQ(text.find("causes"), text.npos) << "they are not known\n" << text;
 }
 
 TEST_F(InspectTest, WeightsTimesColoursAreThePictureOfTextures) {

@@ -91,13 +91,15 @@ TEST_F(ProgramTest, CtrlCSaysWhatIsKeptAndHowToGoOn) {
 
 // Ctrl-C waits neither for a large file nor for a long frame.
 TEST_F(ProgramTest, CtrlCEndsALargeFileAtOnce) {
-  Program program({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});
-  wait_until([&] { return folder_.list() != Names{"trace.json"}; });
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
-  EXPECT_EQ(outcome.exit_code, 130);
-  EXPECT_EQ(outcome.err, "beampipe: stopped\n");
-  EXPECT_EQ(folder_.list(), Names{"trace.json"});
+  for (const Names& storage : {Names{}, Names{"--binary"}}) {
+    Program program(joined({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")}, storage));
+    wait_until([&] { return folder_.list() != Names{"trace.json"}; });
+    program.signal(SIGINT);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.exit_code, 130);
+    EXPECT_EQ(outcome.err, "beampipe: stopped\n");
+    EXPECT_EQ(folder_.list(), Names{"trace.json"});
+  }
 }
 
 TEST_F(ProgramTest, CtrlCEndsALongFrameAtOnce) {
