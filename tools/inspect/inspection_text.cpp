@@ -287,10 +287,10 @@ std::string weights_text(const PixelInspection& inspection, bool unicode) {
   text += "  sum of weight x colour  " + color_text(sum) + "\n";
   text += format("  formats and limits     %+.4f %+.4f %+.4f\n", rest.r, rest.g, rest.b);
   const auto put_bits = [&text](const char* name, const auto& color) {
-    text += format("  %s, to the bit     %.9g %.9g %.9g\n", name, color.r, color.g, color.b);
+    text += format("  %-23s %.9g %.9g %.9g\n", name, color.r, color.g, color.b);
   };
-  if (is_encoded) put_bits("stored", history.pixel);
-  put_bits(is_encoded ? "linear" : "picture", inspection.picture);
+  if (is_encoded) put_bits("stored, to the bit", history.pixel);
+  put_bits(is_encoded ? "linear, to the bit" : "picture, to the bit", inspection.picture);
   return text;
 }
 
