@@ -15,15 +15,15 @@ constexpr Tile kTile{0, 0, 12, 10};
 constexpr float kLeast = 0.125f, kGreatest = 0.75f;  // of the colours
 
 struct Composed {
-  std::uint64_t fragments = 0, merges = 0;
+  std::uint64_t fragments = 0, merges = 0, requests = 0;
 };
 
 // The area is at most the tolerance away from the number of positions that a fragment covers, and 1 if these are all. A
 // colour lies between the least and the greatest one of the triangles, up to the tolerances of the estimate.
 template <std::size_t Words, std::size_t Slots>
 void compose_random(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors, const TriangleList& list,
-                    const std::vector<float>* watermarks, Composed& composed) {
-  OpenTile<Words, Slots> tile(triangles, colors, kTile);
+                    const std::vector<float>* watermarks, const ChunkPool& pool, Composed& composed) {
+  OpenTile<Words, Slots> tile(triangles, colors, kTile, pool);
   const std::vector<PixelColor> found = tile.compose(list, watermarks);
   std::vector<WideMask> covered(kTile.pixels());
   std::vector<bool> has_specks(kTile.pixels());
@@ -53,6 +53,7 @@ void compose_random(const SetupTriangles& triangles, const std::vector<glm::vec3
   }
   composed.fragments += tile.fragments.size();
   for (const float merges : tile.merges) composed.merges += static_cast<std::uint64_t>(merges);
+  composed.requests += tile.result.spills.all();
 }
 
 TEST(Properties, NearFirstKeepsAreaAndColour) {
@@ -66,18 +67,22 @@ TEST(Properties, NearFirstKeepsAreaAndColour) {
     StageCounters ignored;
     const OrderedList ordered = bin_sort(triangles, all_of(triangles), kTile, ignored);
     const std::vector<float>* watermarks = random.one_in(4) ? nullptr : &ordered.watermarks;
+    constexpr int kMostBytes = 60 * 12 * 10;  // 60 a pixel, which some bins fill
+    const ChunkPool pool(random.one_in(4) ? 1 << 20 : static_cast<std::size_t>(random.integer(0, kMostBytes)));
     const auto compose = [&]<std::size_t Words, std::size_t Slots>() {
       ASSERT_NO_FATAL_FAILURE(
-          (compose_random<Words, Slots>(triangles, colors, ordered.triangles, watermarks, composed)));
+          (compose_random<Words, Slots>(triangles, colors, ordered.triangles, watermarks, pool, composed)));
     };
     compose.template operator()<8, 5>();
     compose.template operator()<4, 7>();
     compose.template operator()<2, 4>();
     compose.template operator()<1, 2>();
   });
-  std::printf("fragments composed: %llu; owners that became one: %llu\n",
-              static_cast<unsigned long long>(composed.fragments), static_cast<unsigned long long>(composed.merges));
+  const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("fragments composed: %llu; owners that became one: %llu; requests of chunks in memory: %llu\n",
+              count(composed.fragments), count(composed.merges), count(composed.requests));
   EXPECT_GT(composed.merges, composed.fragments / 100);
+  EXPECT_GT(composed.requests, composed.fragments / 100);
 }
 
 // Bit planes say of every position the state that it has, and are taken apart into the positions they were made from.

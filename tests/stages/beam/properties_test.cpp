@@ -52,11 +52,13 @@ TEST(Properties, EverySampleOfAPartitionOnce) {
 // Every part rounds its own sum by at most 2^-24, or is dropped below kZeroArea. Shared edges cancel exactly.
 TEST(Properties, AreasOfAPartitionAddUp) {
   double worst = 0;
+  std::uint64_t all_pairs = 0;
   search(3'000'000, 150, [&](Random& random) {
     const SetupTriangles parts = random_partition(random, random.int32(1, 200));
     std::vector<Pair> pairs;
     StageCounters counters;
     conservative_raster(parts, all_of(parts), kTile, counters, pairs);
+    all_pairs += pairs.size();
     std::vector<double> sum(kTile.pixels()), dropped(kTile.pixels()), kept(kTile.pixels());
     for (const Pair& pair : pairs) ++dropped[static_cast<std::size_t>(pair.y * kTile.width() + pair.x)];
     for (const Fragment& fragment : beam_fragments(parts, kTile, MaskSource::exact).list) {
@@ -68,7 +70,7 @@ TEST(Properties, AreasOfAPartitionAddUp) {
       ASSERT_NEAR(sum[i], 1, 0x1p-24 * kept[i] + kZeroArea * dropped[i]);
     }
   });
-  std::printf("largest difference from 1: %.3g\n", worst);
+  std::printf("pairs: %llu; largest difference from 1: %.3g\n", static_cast<unsigned long long>(all_pairs), worst);
 }
 
 TEST(Properties, MovingByWholePixelsChangesNothing) {
