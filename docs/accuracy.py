@@ -143,7 +143,7 @@ def print_scenes(program, folder, table, density):
     print_head("scene", "triangles per pixel", *(f"`{spec}`" for spec in SCENES), "`beam` at 1280 × 720")
     columns = [table.rates(spec) for spec in SCENES] + [density.rates("beam", table.scenes, SIZES[0])]
     for scene in table.scenes:
-        answer = subprocess.run([program, "info", folder / f"{scene}.json", "--json"], check=True, capture_output=True)
+        answer = subprocess.run([program, "info", folder / f"{scene}.json", "--json"], check=True, stdout=subprocess.PIPE)
         frame = json.loads(answer.stdout)["frames"][0]
         print_row(scene, f"{frame['triangles'] / frame['width'] / frame['height']:.2g}",
                   *(emr(table.row(scene, spec)) for spec in SCENES), emr(density.row(scene, "beam", SIZES[0])))

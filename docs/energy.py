@@ -21,7 +21,7 @@ def main(program, *folders):
     with open(f"{folders[0]}/report.json", encoding="utf-8") as file:
         first, second = (result["technique"] for result in json.load(file)["results"][:2])
     text = subprocess.run([program, "model", *folders, "--energy", "--over", second, "--json"], check=True,
-                          capture_output=True, text=True).stdout
+                          stdout=subprocess.PIPE, text=True).stdout
     parts = {}
     for report in json.loads(text):
         for row in report["energy"]:

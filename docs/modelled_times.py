@@ -10,6 +10,7 @@ times    milliseconds with their intervals, and the equivalent MSAA rate where `
 bins     what a bin has on chip, and milliseconds
 errors   times over that of the published pipeline, beside the paper's ratios
 beam     times of beam over those of MSAA, for several prices of shading
+ways     the same without a price of shading, for each way in which stages can follow each other
 traffic  what a bin has on chip, DRAM bytes of geometry and of the rest, and milliseconds
 measured  measured times of a CSV file, which stands in place of the folders, and what is modelled
 """
@@ -33,7 +34,7 @@ def scene_of(folder):
 
 def model(program, folders, *options):
     """By scene: the times by technique, and by PART.IMPLEMENTATION within it."""
-    text = subprocess.run([program, "model", *folders, "--json", *options], check=True, capture_output=True,
+    text = subprocess.run([program, "model", *folders, "--json", *options], check=True, stdout=subprocess.PIPE,
                           text=True).stdout
     found = {}
     for report in json.loads(text):
@@ -133,6 +134,17 @@ def beam(program, folders):
             print_row(f"`{BEAM}` / `{msaa}`", f"`{name}`", *cells)
 
 
+def ways(program, folders):
+    found = model(program, folders)
+    print_head(f"`{BEAM}` / `{MSAA[0]}`", "in turn", "on cores", "at once")
+    for name in names_of(next(iter(found.values()))):
+        cells = []
+        for way in ("in_turn", "on_cores", "at_once"):
+            ratios = [times[BEAM][name][way] / times[MSAA[0]][name][way] for times in found.values()]
+            cells.append(f"{min(ratios):.2f}–{max(ratios):.2f}")
+        print_row(f"`{name}`", *cells)
+
+
 def dram_megabytes(result):
     """Of geometry (setup triangles, bin lists, attributes of triangles), and of pixels and the picture."""
     geometry = rest = 0
@@ -157,7 +169,7 @@ def traffic(program, folders):
 
 
 def measured(program, files):
-    text = subprocess.run([program, "correlate", *files, "--json"], check=True, capture_output=True, text=True).stdout
+    text = subprocess.run([program, "correlate", *files, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout
     found = json.loads(text)
     ways = ("in_turn", "at_once")
     print_head("", "measured", "in turn", "over measured", "at once", "over measured")
@@ -170,7 +182,7 @@ def measured(program, files):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "bins", "errors", "beam", "traffic", "measured"))
+    parser.add_argument("table", choices=("times", "bins", "errors", "beam", "ways", "traffic", "measured"))
     parser.add_argument("program")
     parser.add_argument("folders", nargs="+")
     options = parser.parse_args()

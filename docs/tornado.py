@@ -20,7 +20,7 @@ ROWS = 5  # of the table
 def ratios(program, folder):
     """By implementation and technique: its time over BASE's, and what that is with each rate at its ends."""
     text = subprocess.run([program, "model", folder, "--json", "--over", BASE, "--sensitivity"], check=True,
-                          capture_output=True, text=True).stdout
+                          stdout=subprocess.PIPE, text=True).stdout
     base, effects = {}, {}
     for time in json.loads(text)[0]["times"]:
         if time["technique"] in PUBLISHED:

@@ -173,6 +173,10 @@ class Reproduce(unittest.TestCase):
         self.page.write_text("```\n$ beampipe fail\nno such scene\n```\n")
         self.assertIn("no such scene", self.run_it().stderr)
 
+    def test_the_programs_own_error_is_shown(self):
+        self.page.write_text(block("", "echo 'beampipe: error: no such scene' >&2; seq 1000 >&2; exit 3"))
+        self.assertIn("exit 3: beampipe: error: no such scene\n", self.run_it().stderr)
+
     def test_a_linked_page_stays_a_link(self):
         target = self.folder / "target.md"
         target.write_text(block("", "beampipe make 7 -o t.json\nbeampipe show t.json"))
