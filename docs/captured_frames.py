@@ -19,9 +19,9 @@ import measure
 
 def answer(program, command, trace):
     """What a command prints as JSON; exits if it fails, which says why."""
-    finished = subprocess.run([program, command, str(trace), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    finished = subprocess.run([program, command, str(trace), "--json"], capture_output=True, text=True)
     if finished.returncode:
-        sys.exit(f"{command} {trace}: exit code {finished.returncode}")
+        sys.exit(finished.stderr.strip() or f"{command} {trace}: exit code {finished.returncode}")
     return json.loads(finished.stdout)
 
 
