@@ -87,7 +87,7 @@ TEST(RopRules, StencilsOfBothFaces) {
 TEST(RopRules, BlendedMaterialsGoOverWhatIsStored) {
   Draws draws;
   draws.add();
-  const RopRule& rule = draws.rules().draws[0][1];
+  const RopRule rule = draws.rules().draws[0][1];
   EXPECT_FALSE(rule.writes_depth);
   ASSERT_TRUE(rule.blend);
   EXPECT_EQ(rule.blend->color, BlendEquation{});
