@@ -162,6 +162,36 @@ TEST_F(ProgramTest, AFailedWriteIsOneLineAndLeavesEarlierResultsWhole) {
   EXPECT_EQ(read_text(folder_ / "out/report.json"), report);
 }
 
+// Of every other command that writes: nothing that is new stays, and nothing that was there changes.
+TEST_F(ProgramTest, AFullDiskLeavesFilesAsTheyWere) {
+  const std::string trace = path("trace.json"), out = path("out");
+  succeed({"compare", trace, "-t", "beam", "msaa:1", "--ladder", "1", "--frames", "0", "-o", path("results")});
+  const std::vector<Names> commands = {
+      {"compare", trace, "-t", "beam", "--ladder", "1", "-o", out},
+      {"run", trace, "-t", "beam", "--frames", "0", "-o", out, "--trace-events", path("events.json")},
+      {"run", trace, "-t", "beam", "--frames", "0", "-o", out, "--memory-trace", path("requests")},
+      {"report", path("results"), "-o", path("page.html")},
+      {"plot", path("results"), "-o", path("plot.svg")},
+      {"figure", path("results"), "-o", path("figure.svg")},
+      {"inspect", trace, "--pixel", "3,3", "-t", "beam", "-o", path("pixel.svg")},
+      {"export-soup", trace, "-o", path("soup")},
+      {"make", "soup", "--triangles", "50", "-o", path("made.json")},
+      {"make", "soup", "--triangles", "50", "--binary", "-o", path("made.json")},
+      {"preview", trace, "-o", path("preview.png")},
+      {"stress", "--case", "layers", "-t", "beam", "-o", path("stress")},
+  };
+  std::filesystem::create_directories(folder_ / "stress/traces");  // new folders may stay
+  const Names before = folder_.list();
+  for (const Names& command : commands) {
+    SCOPED_TRACE(command[0] + " " + command.back());
+    const FileSizeLimit limit(100);
+    const Outcome outcome = run_program(command);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_EQ(outcome.err.rfind("beampipe: error: ", 0), 0u) << outcome.err;  // its file is full, too
+    EXPECT_EQ(folder_.list(), before) << outcome.err;
+  }
+}
+
 TEST_F(ProgramTest, AFolderInTheReportsPlaceIsRefusedAtOnce) {
   std::filesystem::create_directories(folder_ / "out/report.json");
   const Names before = folder_.list();
