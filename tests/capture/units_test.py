@@ -18,6 +18,7 @@ sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
 sys.dont_write_bytecode = True
 import attempts
 import clears
+import failure
 import frame
 import geometry
 import images
@@ -55,22 +56,35 @@ class Attempts(unittest.TestCase):
         self.assertEqual(self.outcome(crash, other, "frame"), (other, 2))
 
 
-class Errors(unittest.TestCase):
-    def test_an_internal_error_is_one_line_unless_it_is_looked_for(self):
-        path = os.path.join(sys.path[0], "__main__.py")
-        spec = importlib.util.spec_from_file_location("capture_main", path)
-        program = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(program)
+def load_program():
+    """tools/capture/__main__.py as a module."""
+    spec = importlib.util.spec_from_file_location("capture_main", os.path.join(sys.path[0], "__main__.py"))
+    program = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(program)
+    return program
 
-        def fail(_):
-            raise ValueError("two\nlines")
-        program.run = fail
-        words = ["-o", "a.json", "--", "true"]
-        with contextlib.redirect_stderr(io.StringIO()) as error, mock.patch.dict(os.environ, {program.DEBUG: ""}):
-            self.assertEqual(program.main(words), 1)
-        self.assertRegex(error.getvalue(), r"\Abeampipe: error: internal error: ValueError: two lines \([^\n]*\n\Z")
-        with mock.patch.dict(os.environ, {program.DEBUG: "1"}), self.assertRaises(ValueError):
-            program.main(words)
+
+class Errors(unittest.TestCase):
+    WORDS = ["-o", "a.json", "--", "true"]
+
+    def outcome(self, error, debug=""):
+        """(exit code, standard error) of a run that raises."""
+        program = load_program()
+        with (contextlib.redirect_stderr(io.StringIO()) as text, mock.patch.dict(os.environ, {program.DEBUG: debug}),
+              mock.patch.object(program, "run", side_effect=error)):
+            return program.main(self.WORDS), text.getvalue()
+
+    def test_an_internal_error_is_one_line_unless_it_is_looked_for(self):
+        code, text = self.outcome(ValueError("two\nlines"))
+        self.assertEqual(code, 1)
+        self.assertRegex(text, r"\Abeampipe: error: internal error: ValueError: two lines \([^\n]*\n\Z")
+        with self.assertRaises(ValueError):
+            self.outcome(ValueError("two\nlines"), debug="1")
+
+    def test_what_is_expected_is_one_line_and_its_exit_code(self):
+        for error, code in ((failure.Failure, 1), (attempts.EarlyCrash, 1), (failure.WrongUsage, 2),
+                            (failure.MissingPackages, 3)):
+            self.assertEqual(self.outcome(error("why\n not")), (code, "beampipe: error: why not\n"), error)
 
 
 class Primitives(unittest.TestCase):

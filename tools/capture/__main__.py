@@ -9,7 +9,7 @@ import tempfile
 import time
 
 import packages
-from failure import Failure, MissingPackages, WrongUsage
+from failure import Failure, WrongUsage
 from processes import Processes
 from progress import Progress
 
@@ -194,10 +194,9 @@ def main(words):
     try:
         run(parse(words))
         return 0
-    except (Failure, WrongUsage, MissingPackages) as error:
-        code = {Failure: 1, WrongUsage: 2, MissingPackages: 3}[type(error)]
+    except Failure as error:
         print(f"beampipe: error: {' '.join(str(error).split())}", file=sys.stderr)
-        return code
+        return error.exit_code
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         print(f"beampipe: error: {place}{error.strerror or error}", file=sys.stderr)

@@ -56,6 +56,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", "mali_g720"}, 1, "did you mean 'mali_g710'"},
       {{"run", trace, "-t", "beam", "-o", out, "--material-cost", "1,2,3,4"}, 2, "expected OPERATIONS[,FETCHES"},
       {{"run", trace, "-t", "beam", "-o", out, "--light-cost", "x"}, 2, "expected OPERATIONS[,FETCHES"},
+      {{"capture", "--list", "--", "no_such_program"}, 1, "no_such_program: there is no such program"},
       {{"counters", "componse"}, 2, "expected the name of a stage, found none (did you mean 'compose'?)"},
       {{"model", out, "--sensitivity"}, 2, "expected --over TECHNIQUE beside it"},
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("broken.json")}, 1, "expected valid JSON"},
