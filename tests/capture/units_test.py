@@ -87,6 +87,45 @@ class Errors(unittest.TestCase):
             self.assertEqual(self.outcome(error("why\n not")), (code, "beampipe: error: why not\n"), error)
 
 
+class Summaries(unittest.TestCase):
+    """What is printed of a trace counts what is in it, in all of its frames."""
+
+    def lines(self, frames, first=None):
+        trace = {"source": {} if first is None else {"frame": first}, "images": {"captured": {}}, "programs": [{}],
+                 "program_images": [{}], "meshes": {"quad": {"indices": {"count": 6}}, "one": {"indices": {"count": 3}}},
+                 "frames": frames}
+        return list(load_program().summary("a.json", trace, 1260000))
+
+    def test_of_one(self):
+        frame = {"width": 4, "height": 3, "draws": [{"mesh": "one"}], "left_out": []}
+        self.assertEqual(self.lines([frame], 20), [
+            "a.json: frame 20, 4 x 3 pixels, 1 draw, 1 triangle, 2 meshes, 1 fragment shader, 2 images, 1.3 MB"])
+
+    def test_of_several(self):
+        left_out = {"reason": "smooth lines", "draws": 1, "primitives": 1}
+        frames = [{"width": 4, "height": 3, "draws": [{"mesh": "one"}, {"mesh": "quad"}], "left_out": left}
+                  for left in ([left_out], [], [left_out])]
+        self.assertEqual(self.lines(frames, 20), [
+            "a.json: frames 20 to 22, 4 x 3 pixels, 6 draws, 9 triangles, 2 meshes, 1 fragment shader, 2 images, 1.3 MB",
+            "left out: 2 draws, 2 primitives: smooth lines"])
+
+    def test_of_a_file_whose_frame_has_no_number(self):
+        frame = {"width": 4, "height": 3, "draws": [], "left_out": []}
+        self.assertTrue(self.lines([frame])[0].startswith("a.json: 1 frame, 4 x 3 pixels, 0 draws, "))
+
+
+class Wishes(unittest.TestCase):
+    def test_a_time_limit_before_the_frame_is_wrong_usage(self):
+        parse = load_program().parse
+        for words in (["--after", "8", "--timeout", "5", "--", "true"], ["--timeout", "5", "--", "true"],
+                      ["--timeout", "5", "a.trace"]):
+            with self.assertRaisesRegex(failure.WrongUsage, "--timeout 5 .*--after [58]", msg=words):
+                parse(["--list", *words])
+        for words in (["--after", "4", "--timeout", "5", "--", "true"], ["--frame", "9", "--timeout", "5", "--", "true"],
+                      ["--timeout", "5", "a.rdc"]):
+            self.assertEqual(parse(["--list", *words]).timeout, 5)
+
+
 class Primitives(unittest.TestCase):
     def test_topologies(self):
         for why, topology, indices, restart, expected in [
