@@ -43,6 +43,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
       {{"run", trace, "-t", "beam\nbeam", "-o", out}, 2, "beam?beam"},
       {{"run", trace, "-t", "msaa:3", "-o", out}, 2, "msaa:3"},
+      {{"run", trace, "-t", "beam,msaa:8", "-o", out}, 2, "or reference; spaces separate techniques"},
       {{"run", trace, "-t", "beam", "beam", "-o", out}, 2, "twice"},
       {{"run", "-t", "beam", trace, "-o", out}, 2, "was taken for a technique; write the trace before -t"},
       {{"run", "-t", "beam", "-o", out}, 2, "TRACE is missing"},
