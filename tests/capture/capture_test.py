@@ -204,7 +204,7 @@ class Captures(unittest.TestCase):
             self.assertEqual(done.stderr.count("\n"), 1)
 
     def start(self, *program):
-        return subprocess.Popen([BEAMPIPE, "capture", "--after", "1000", "--timeout", "1000", "-o",
+        return subprocess.Popen([BEAMPIPE, "capture", "--after", "900", "--timeout", "1000", "-o",
                                  os.path.join(self.folder, "a.json"), "--", *program],
                                 env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.PIPE, text=True)
