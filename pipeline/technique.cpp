@@ -13,7 +13,9 @@ namespace {
   std::vector<std::string> names;
   for (const TechniqueKind& kind : technique_kinds())
     if (names.empty() || names.back() != kind.name) names.push_back(kind.name);
-  spec.fail("the name must be " + list_of(names) + did_you_mean(spec.name(), names));
+  const bool is_list = spec.name().find(',') != spec.name().npos;
+  spec.fail("the name must be " + list_of(names) +
+            (is_list ? "; spaces separate techniques" : did_you_mean(spec.name(), names)));
 }
 
 // The techniques of the spec's name, the default first.

@@ -23,9 +23,9 @@ def environment():
     return {key: value for key, value in os.environ.items() if key != "DISPLAY"}
 
 
-def capture(*words):
-    return subprocess.run([BEAMPIPE, "capture", "--timeout", str(SECONDS), *words], env=environment(), text=True,
-                          stdin=subprocess.DEVNULL, capture_output=True)
+def capture(*words, display=None):
+    return subprocess.run([BEAMPIPE, "capture", "--timeout", str(SECONDS), *words], text=True, stdin=subprocess.DEVNULL,
+                          env={**environment(), **({"DISPLAY": display} if display else {})}, capture_output=True)
 
 
 def values_of(trace, folder, view):
@@ -158,9 +158,27 @@ class Captures(unittest.TestCase):
         self.assertRegex(done.stderr, r"\Abeampipe: error: false ended with exit code 1[^\n]*\n\Z")
         self.assertEqual(os.listdir(self.folder), [])
 
+    def test_the_last_words_of_a_program_are_not_lost(self):
+        for _ in range(8):
+            done = capture("--list", "--", "sh", "-c", "echo no such thing; exit 4")
+            self.assertIn('(it last said: "no such thing")', done.stderr)
+
+    def test_a_display_that_is_none(self):
+        done = capture("--list", "--", "sh", "-c", "exit 4", display=":77")
+        self.assertIn("DISPLAY is :77; without it, a program gets a virtual display", done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1)
+
+    def test_a_program_that_ends_before_the_frame_says_when(self):
+        if shutil.which("glxgears") is None:
+            self.skipTest("glxgears is not installed")
+        for words, part in ((["--frame", "1000000"], "before frame 1000000"),
+                            (["--after", "60"], "before the 60 s of --after; --frame 1 takes the first frame")):
+            done = capture("--list", *words, "--", "timeout", "3", "glxgears")
+            self.assertRegex(done.stderr, rf"\Abeampipe: error: timeout ended with exit code 124 after [34]\.\d s, {part}\b")
+
     def test_a_program_that_draws_nothing_is_one_line(self):
         start = time.monotonic()
-        done = capture("--timeout", "3", "-o", os.path.join(self.folder, "a.json"), "--", "sleep", "1000")
+        done = capture("--frame", "1", "--timeout", "3", "-o", os.path.join(self.folder, "a.json"), "--", "sleep", "1000")
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"\Abeampipe: error: sleep: no picture shown within the time limit[^\n]*\n\Z")
         self.assertLess(time.monotonic() - start, 60)
@@ -186,7 +204,7 @@ class Captures(unittest.TestCase):
             self.assertEqual(done.stderr.count("\n"), 1)
 
     def start(self, *program):
-        return subprocess.Popen([BEAMPIPE, "capture", "--after", "1000", "--timeout", "1000", "-o",
+        return subprocess.Popen([BEAMPIPE, "capture", "--after", "900", "--timeout", "1000", "-o",
                                  os.path.join(self.folder, "a.json"), "--", *program],
                                 env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.PIPE, text=True)

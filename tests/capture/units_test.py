@@ -18,6 +18,7 @@ sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
 sys.dont_write_bytecode = True
 import attempts
 import clears
+import failure
 import frame
 import geometry
 import images
@@ -55,22 +56,74 @@ class Attempts(unittest.TestCase):
         self.assertEqual(self.outcome(crash, other, "frame"), (other, 2))
 
 
-class Errors(unittest.TestCase):
-    def test_an_internal_error_is_one_line_unless_it_is_looked_for(self):
-        path = os.path.join(sys.path[0], "__main__.py")
-        spec = importlib.util.spec_from_file_location("capture_main", path)
-        program = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(program)
+def load_program():
+    """tools/capture/__main__.py as a module."""
+    spec = importlib.util.spec_from_file_location("capture_main", os.path.join(sys.path[0], "__main__.py"))
+    program = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(program)
+    return program
 
-        def fail(_):
-            raise ValueError("two\nlines")
-        program.run = fail
-        words = ["-o", "a.json", "--", "true"]
-        with contextlib.redirect_stderr(io.StringIO()) as error, mock.patch.dict(os.environ, {program.DEBUG: ""}):
-            self.assertEqual(program.main(words), 1)
-        self.assertRegex(error.getvalue(), r"\Abeampipe: error: internal error: ValueError: two lines \([^\n]*\n\Z")
-        with mock.patch.dict(os.environ, {program.DEBUG: "1"}), self.assertRaises(ValueError):
-            program.main(words)
+
+class Errors(unittest.TestCase):
+    WORDS = ["-o", "a.json", "--", "true"]
+
+    def outcome(self, error, debug=""):
+        """(exit code, standard error) of a run that raises."""
+        program = load_program()
+        with (contextlib.redirect_stderr(io.StringIO()) as text, mock.patch.dict(os.environ, {program.DEBUG: debug}),
+              mock.patch.object(program, "run", side_effect=error)):
+            return program.main(self.WORDS), text.getvalue()
+
+    def test_an_internal_error_is_one_line_unless_it_is_looked_for(self):
+        code, text = self.outcome(ValueError("two\nlines"))
+        self.assertEqual(code, 1)
+        self.assertRegex(text, r"\Abeampipe: error: internal error: ValueError: two lines \([^\n]*\n\Z")
+        with self.assertRaises(ValueError):
+            self.outcome(ValueError("two\nlines"), debug="1")
+
+    def test_what_is_expected_is_one_line_and_its_exit_code(self):
+        for error, code in ((failure.Failure, 1), (attempts.EarlyCrash, 1), (failure.WrongUsage, 2),
+                            (failure.MissingPackages, 3)):
+            self.assertEqual(self.outcome(error("why\n not")), (code, "beampipe: error: why not\n"), error)
+
+
+class Summaries(unittest.TestCase):
+    """What is printed of a trace counts what is in it, in all of its frames."""
+
+    def lines(self, frames, first=None):
+        trace = {"source": {} if first is None else {"frame": first}, "images": {"captured": {}}, "programs": [{}],
+                 "program_images": [{}], "meshes": {"quad": {"indices": {"count": 6}}, "one": {"indices": {"count": 3}}},
+                 "frames": frames}
+        return list(load_program().summary("a.json", trace, 1260000))
+
+    def test_of_one(self):
+        frame = {"width": 4, "height": 3, "draws": [{"mesh": "one"}], "left_out": []}
+        self.assertEqual(self.lines([frame], 20), [
+            "a.json: frame 20, 4 x 3 pixels, 1 draw, 1 triangle, 2 meshes, 1 fragment shader, 2 images, 1.3 MB"])
+
+    def test_of_several(self):
+        left_out = {"reason": "smooth lines", "draws": 1, "primitives": 1}
+        frames = [{"width": 4, "height": 3, "draws": [{"mesh": "one"}, {"mesh": "quad"}], "left_out": left}
+                  for left in ([left_out], [], [left_out])]
+        self.assertEqual(self.lines(frames, 20), [
+            "a.json: frames 20 to 22, 4 x 3 pixels, 6 draws, 9 triangles, 2 meshes, 1 fragment shader, 2 images, 1.3 MB",
+            "left out: 2 draws, 2 primitives: smooth lines"])
+
+    def test_of_a_file_whose_frame_has_no_number(self):
+        frame = {"width": 4, "height": 3, "draws": [], "left_out": []}
+        self.assertTrue(self.lines([frame])[0].startswith("a.json: 1 frame, 4 x 3 pixels, 0 draws, "))
+
+
+class Wishes(unittest.TestCase):
+    def test_a_time_limit_before_the_frame_is_wrong_usage(self):
+        parse = load_program().parse
+        for words in (["--after", "8", "--timeout", "5", "--", "true"], ["--timeout", "5", "--", "true"],
+                      ["--timeout", "5", "a.trace"]):
+            with self.assertRaisesRegex(failure.WrongUsage, "--timeout 5 .*--after [58]", msg=words):
+                parse(["--list", *words])
+        for words in (["--after", "4", "--timeout", "5", "--", "true"], ["--frame", "9", "--timeout", "5", "--", "true"],
+                      ["--timeout", "5", "a.rdc"]):
+            self.assertEqual(parse(["--list", *words]).timeout, 5)
 
 
 class Primitives(unittest.TestCase):

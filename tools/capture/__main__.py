@@ -9,7 +9,7 @@ import tempfile
 import time
 
 import packages
-from failure import Failure, MissingPackages, WrongUsage
+from failure import Failure, WrongUsage
 from processes import Processes
 from progress import Progress
 
@@ -77,6 +77,9 @@ def parse(words):
     if cut == len(words) and not arguments.is_file:
         raise WrongUsage("the program comes after --, and files end in .rdc, .trace or .gfxr "
                          "(see beampipe capture --help)")
+    has_recording = not (arguments.is_file and arguments.program[0].endswith(".rdc"))
+    if has_recording and arguments.frame is None and arguments.timeout <= arguments.after:
+        raise WrongUsage(f"--timeout {arguments.timeout:g} is over before the frame at --after {arguments.after:g}")
     if arguments.output and not arguments.output.endswith(".json"):
         raise WrongUsage(f"-o {arguments.output}: expected a name that ends in .json")
     return arguments
@@ -119,6 +122,31 @@ def source_of(arguments, recording, pictures):
     return source
 
 
+def counted(number, noun):
+    return f"{number} {noun}{'' if number == 1 else 'es' if noun.endswith('sh') else 's'}"
+
+
+def summary(path, trace, size):
+    """Lines that say what is in a trace; `size`: bytes of its files."""
+    frames, meshes, first = trace["frames"], trace["meshes"], trace["source"].get("frame")
+    if first is None:
+        numbers = counted(len(frames), "frame")
+    else:
+        numbers = f"frame {first}" if len(frames) == 1 else f"frames {first} to {first + len(frames) - 1}"
+    draws = [draw for frame in frames for draw in frame["draws"]]
+    triangles = sum(meshes[draw["mesh"]]["indices"]["count"] // 3 for draw in draws)
+    yield (f"{path}: {numbers}, {frames[0]['width']} x {frames[0]['height']} pixels, {counted(len(draws), 'draw')}, "
+           f"{counted(triangles, 'triangle')}, {counted(len(meshes), 'mesh')}, "
+           f"{counted(len(trace['programs']), 'fragment shader')}, "
+           f"{counted(len(trace['images']) + len(trace['program_images']), 'image')}, {size / 1e6:.1f} MB")
+    left_out = {}
+    for one in (one for frame in frames for one in frame["left_out"]):
+        draws, primitives = left_out.get(one["reason"], (0, 0))
+        left_out[one["reason"]] = (draws + one["draws"], primitives + one["primitives"])
+    for reason, (draws, primitives) in sorted(left_out.items()):
+        yield f"left out: {counted(draws, 'draw')}, {counted(primitives, 'primitive')}: {reason}"
+
+
 def make_trace(arguments, recording, extracted, folder, progress):
     """Writes the trace; prints what is in it."""
     import frame as frames_module
@@ -130,25 +158,18 @@ def make_trace(arguments, recording, extracted, folder, progress):
         progress.show(f"frame {number + 1} of {len(extracted)}")
         frame = frames_module.Frame(pictures, found)
         if not frame.draws:
-            reasons = ", ".join(f"{count} draws: {reason}" for reason, (count, _) in frame.left_out.items())
+            reasons = ", ".join(f"{counted(count, 'draw')}: {reason}" for reason, (count, _) in frame.left_out.items())
             raise Failure(f"the pass has no triangles ({reasons or 'all are empty'})")
         draws.append(collection.add_frame(frame, os.path.join(folder, str(number))))
         frames.append(frame)
-    size = trace_file.write_trace(arguments.output, frames, draws, collection,
-                                  source_of(arguments, recording, extracted[0][0]))
+    trace, size = trace_file.write_trace(arguments.output, frames, draws, collection,
+                                         source_of(arguments, recording, extracted[0][0]))
     progress.clear()
-    first = frames[0]
-    drawn = sum(len(frame.draws) for frame in frames)
-    print(f"{arguments.output}: {len(frames)} frame{'s' if len(frames) > 1 else ''}, {first.width} x {first.height} "
-          f"pixels, {drawn} draws, {sum(frame.triangles for frame in frames)} triangles, "
-          f"{len(collection.meshes)} meshes, {len(collection.programs.entries)} fragment shaders, "
-          f"{len(collection.images.entries)} images, {size / 1e6:.1f} MB")
-    for reason, (count, primitives) in sorted(first.left_out.items()):
-        print(f"left out: {count} draws, {primitives} primitives: {reason}")
+    print("\n".join(summary(arguments.output, trace, size)))
     for image in sorted(collection.unread):
         print(f"left out: {image}: no format that a trace has")
-    if first.later_draws:
-        print(f"after this pass the program draws {first.later_draws} times, for instance to filter the picture")
+    if later := frames[0].later_draws:
+        print(f"after this pass: {counted(later, 'draw')}, for instance to filter the picture")
 
 
 def run(arguments):
@@ -194,10 +215,9 @@ def main(words):
     try:
         run(parse(words))
         return 0
-    except (Failure, WrongUsage, MissingPackages) as error:
-        code = {Failure: 1, WrongUsage: 2, MissingPackages: 3}[type(error)]
+    except Failure as error:
         print(f"beampipe: error: {' '.join(str(error).split())}", file=sys.stderr)
-        return code
+        return error.exit_code
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         print(f"beampipe: error: {place}{error.strerror or error}", file=sys.stderr)

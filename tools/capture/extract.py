@@ -115,7 +115,7 @@ def main(job_path):
         job = json.load(file)
     result = os.path.splitext(job_path)[0]
     try:
-        replay = Replay(job["capture"], for_draws=not job["pictures"])
+        replay = Replay(job["capture"], is_one_of_many=not job["pictures"])
         found, kept = kept_pass(replay, job["target"])
         # One worker does not take both: where depth with stencil has samples, RenderDoc crashes when it replays more
         # after it was read.

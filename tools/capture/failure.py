@@ -2,12 +2,15 @@
 
 
 class Failure(Exception):
-    """Something could not be done: exit code 1."""
+    """Something could not be done."""
+    exit_code = 1
 
 
-class WrongUsage(Exception):
-    """What the user asked for makes no sense: exit code 2."""
+class WrongUsage(Failure):
+    """What the user asked for makes no sense."""
+    exit_code = 2
 
 
-class MissingPackages(Exception):
-    """Debian packages are not installed: exit code 3."""
+class MissingPackages(Failure):
+    """Debian packages are not installed."""
+    exit_code = 3

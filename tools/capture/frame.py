@@ -73,7 +73,6 @@ class Frame:
                 state["clears_stencil"] = owed.stencil
             owed = Clears()
             self.draws.append(Draw(one, state))
-        self.triangles = sum(len(draw.triangles) for draw in self.draws)
 
     def _leave_out(self, reason, primitives):
         draws, count = self.left_out.get(reason, (0, 0))

@@ -14,6 +14,7 @@ from failure import Failure
 from redraw import ask_for_redraw
 
 REDRAW_AFTER = 2.0  # seconds without a new picture before the program's windows are asked to draw again
+LAST_WORDS = 0.5  # seconds that are waited for the rest of what a program prints; what it has started may go on
 
 ENVIRONMENT = {"ENABLE_VULKAN_RENDERDOC_CAPTURE": "1", "MESA_LOADER_DRIVER_OVERRIDE": "zink",
                "LIBGL_ALWAYS_SOFTWARE": "1"}
@@ -32,7 +33,8 @@ class _Output:
 
     def __init__(self, stream):
         self.tail = b""
-        threading.Thread(target=self._read, args=(stream.fileno(), stream), daemon=True).start()
+        self.reader = threading.Thread(target=self._read, args=(stream.fileno(), stream), daemon=True)
+        self.reader.start()
 
     def _read(self, descriptor, stream):
         try:
@@ -42,6 +44,7 @@ class _Output:
             stream.close()
 
     def last(self):
+        self.reader.join(LAST_WORDS)
         lines = [line.strip() for line in self.tail.decode(errors="replace").splitlines() if line.strip()]
         return f' (it last said: "{lines[-1][:200]}")' if lines else ""
 
@@ -106,13 +109,28 @@ class _Session:
         done = self.program.poll()
         if done is not None:
             how = f"was ended by signal {-done}" if done < 0 else f"ended with exit code {done}"
-            when = "before the frame that was asked for" if self.presents else "without showing a picture"
+            seconds = time.monotonic() - self.start
             kind = EarlyCrash if done < 0 and not self.presents else Failure
-            raise kind(f"{self.name} {how} {when}{self.output.last()}")
+            raise kind(f"{self.name} {how} after {seconds:.1f} s, {self._before_what()}{self._last_words()}")
         if time.monotonic() > self.deadline:
             what = "frame captured" if self.presents else "picture shown"
-            raise Failure(f"{self.name}: no {what} within the time limit (see --timeout){self.output.last()}")
+            raise Failure(f"{self.name}: no {what} within the time limit (see --timeout){self._last_words()}")
         self.progress.show(f"{self.name} runs" + (", capturing" if self.triggered_at else ""))
+
+    def _before_what(self):
+        """What the program has ended without."""
+        if not self.presents:
+            return "without showing a picture"
+        if self.wishes.frame is not None:
+            return f"before frame {self.wishes.frame + self.wishes.frames - 1}"
+        if self.triggered_at is None:
+            return f"before the {self.wishes.after:g} s of --after; --frame 1 takes the first frame"
+        return "before another frame"
+
+    def _last_words(self):
+        display = os.environ.get("DISPLAY")
+        hint = f"; DISPLAY is {display}; without it, a program gets a virtual display"
+        return self.output.last() + (hint if display and not self.presents else "")
 
     def _trigger(self):
         if self.wishes.frame is not None:

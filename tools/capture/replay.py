@@ -20,18 +20,18 @@ class ReplayError(Exception):
 
 
 # Mesa's software drivers filter textures by shortcuts, which this turns off: what they draw then is what the
-# specification says. "nopt" compiles shaders faster. Other drivers do not know this variable.
+# specification says. Other drivers do not know this variable.
 FILTERING = "no_brilinear,no_rho_approx,no_quad_lod,no_aos_sampling"
-_ENVIRONMENT = {"GALLIVM_PERF": FILTERING}
-_FOR_DRAWS = {"GALLIVM_PERF": FILTERING + ",nopt", "LP_NUM_THREADS": "1"}
 
 
 class Replay:
-    """Opens a capture of Vulkan. `color`, `depth` and textures are named by RenderDoc's numbers. `for_draws`: many
-    draws are looked at, and the picture is not what matters."""
+    """Opens a capture of Vulkan. `color`, `depth` and textures are named by RenderDoc's numbers. `is_one_of_many`:
+    other processes replay it at the same time."""
 
-    def __init__(self, path, for_draws=False):
-        os.environ.update(_FOR_DRAWS if for_draws else _ENVIRONMENT)  # before the driver is loaded
+    def __init__(self, path, is_one_of_many=False):
+        os.environ["GALLIVM_PERF"] = FILTERING  # before the driver is loaded
+        if is_one_of_many:
+            os.environ["LP_NUM_THREADS"] = "1"
         rd.InitialiseReplay(rd.GlobalEnvironment(), [])
         self.file = rd.OpenCaptureFile()
         opened = self.file.OpenFile(path, "", None)

@@ -70,8 +70,8 @@ def write_all(files):
 
 
 def write_trace(path, frames, draws_of_frames, collection, source):
-    """Writes the trace of frame.Frame objects with the draws that meshes.Collection made of them. Returns the bytes of
-    all files."""
+    """Writes the trace of frame.Frame objects with the draws that meshes.Collection made of them. Returns the trace, and
+    the bytes of all its files."""
     stem = os.path.splitext(os.path.basename(path))[0]
     folder = os.path.dirname(path) or "."
     arrays, depths = Buffer("arrays"), Buffer("depths")
@@ -125,4 +125,4 @@ def write_trace(path, frames, draws_of_frames, collection, source):
     files.append((path, json_text({key: value for key, value in trace.items() if value or key in ("meshes", "frames")})
                   .encode()))
     write_all(files)
-    return sum(len(data) for _, data in files)
+    return trace, sum(len(data) for _, data in files)

@@ -9,8 +9,7 @@ namespace beampipe {
 
 void add_capture_command(CommandLine& line) {
   const auto words = std::make_shared<std::vector<std::string>>();
-  Command command = line.add_command("capture", "Make a trace from a frame of a real OpenGL or Vulkan program");
-  command.take_all_words(*words);
+  Command command = line.add_command("capture", "Make a trace from a frame of a real OpenGL or Vulkan program", *words);
   command.set_work([words] {
     std::vector<std::string> arguments = {
         scripts_folder("share/beampipe/capture", BEAMPIPE_CAPTURE_SCRIPTS, "__main__.py").string()};

@@ -10,8 +10,7 @@ namespace beampipe {
 void add_figure_command(CommandLine& line) {
   const auto words = std::make_shared<std::vector<std::string>>();
   Command command =
-      line.add_command("figure", "Make a figure for a paper from results: pictures, crops, maps of errors");
-  command.take_all_words(*words);
+      line.add_command("figure", "Make a figure for a paper from results: pictures, crops, maps of errors", *words);
   command.set_work([words] {
     const std::filesystem::path package =
         scripts_folder(BEAMPIPE_PACKAGE_FOLDER, BEAMPIPE_PACKAGE_SOURCE, "beampipe/figure_command.py");

@@ -11,6 +11,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/trace_notes.h"
 #include "tools/evaluate/draw_notes.h"
+#include "tools/files/format.h"
 #include "tools/report/report_text.h"
 #include "traces/files/json.h"
 #include "traces/files/trace_io.h"
@@ -201,8 +202,12 @@ Json info_json(const Trace& trace, const std::string& file) {
                               {"attributes", attributes_of(mesh)},
                               {"bounds", to_json(bounds_of(mesh))}});
   }
-  for (const TextureImage& image : trace.images)
-    json["images"].push_back({{"name", image.name}, {"width", image.width}, {"height", image.height}});
+  const auto add_images = [&](const auto& images) {
+    for (const auto& image : images)
+      json["images"].push_back({{"name", image.name}, {"width", image.width}, {"height", image.height}});
+  };
+  add_images(trace.images);
+  add_images(trace.program_images);
   const MaterialInfo materials = info_of(trace.materials);
   json["materials"] = {{"opaque", materials.opaque},
                        {"mask", materials.mask},
@@ -271,8 +276,8 @@ std::string info_text(const Trace& trace) {
   std::size_t triangles = 0;
   for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
   std::string text = trace.source ? source_text(*trace.source) : "";
-  text += std::to_string(trace.meshes.size()) + " meshes of " + std::to_string(triangles) + " triangles, " +
-          std::to_string(trace.images.size()) + " images\n\n";
+  text += with_noun(trace.meshes.size(), "mesh") + " of " + with_noun(triangles, "triangle") + ", " +
+          with_noun(trace.images.size() + trace.program_images.size(), "image") + "\n\n";
   text += frames_text(trace);
   if (!trace.materials.empty()) text += "\n" + materials_text(trace);
   text += capture_text(trace.frames[0]);

@@ -162,19 +162,7 @@ bool Command::was_given(const std::string& option) const { return app_->count(op
 
 void Command::footer(const std::string& text) { app_->footer(text); }
 
-void Command::take_all_words(std::vector<std::string>& words) {
-  app_->prefix_command();
-  app_->allow_extras();
-  app_->set_help_flag();
-  all_words_ = &words;
-}
-
-void Command::set_work(std::function<void()> work) {
-  app_->callback([app = app_, words = all_words_, work = std::move(work)] {
-    if (words) *words = app->remaining();
-    work();
-  });
-}
+void Command::set_work(std::function<void()> work) { app_->callback(std::move(work)); }
 
 CommandLine::CommandLine(const std::string& program, const std::string& version, const std::string& description,
                          const std::string& footer)
@@ -188,6 +176,14 @@ CommandLine::~CommandLine() = default;
 
 Command CommandLine::add_command(const std::string& name, const std::string& description) {
   return Command(app_->add_subcommand(name, description));
+}
+
+Command CommandLine::add_command(const std::string& name, const std::string& description,
+                                 std::vector<std::string>& words) {
+  all_words_[name] = &words;
+  CLI::App* app = app_->add_subcommand(name, description);
+  app->set_help_flag();
+  return Command(app);
 }
 
 std::string CommandLine::description() const { return app_->get_description(); }
@@ -209,6 +205,10 @@ std::vector<CommandHelp> CommandLine::help() const {
 
 void CommandLine::run(int argc, char** argv) {
   const std::string program = app_->get_name();
+  if (const auto found = all_words_.find(argc > 1 ? argv[1] : ""); found != all_words_.end()) {
+    found->second->assign(argv + 2, argv + argc);
+    argc = 2;
+  }
   try {
     app_->parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

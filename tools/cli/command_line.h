@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -53,10 +54,6 @@ class Command {
   Option add_flag(const std::string& names, bool& variable, const std::string& help);
   Command add_group(const std::string& title);
 
-  // All words that follow the command go to `words`, options and --help too, for a program that understands them. Must
-  // come before set_work().
-  void take_all_words(std::vector<std::string>& words);
-
   bool was_given(const std::string& option) const;
 
   // What --help prints after the options.
@@ -67,7 +64,6 @@ class Command {
 
  private:
   CLI::App* app_;
-  std::vector<std::string>* all_words_ = nullptr;
 };
 
 // What --help says, for man pages and for shells.
@@ -92,6 +88,10 @@ class CommandLine {
 
   Command add_command(const std::string& name, const std::string& description);
 
+  // A command for a program that understands all words which follow its name, options and --help too: run() leaves them
+  // in `words`, which must live until then.
+  Command add_command(const std::string& name, const std::string& description, std::vector<std::string>& words);
+
   std::string description() const;
   std::string footer() const;
 
@@ -104,6 +104,7 @@ class CommandLine {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::map<std::string, std::vector<std::string>*> all_words_;  // of the commands that take them, by name
 };
 
 }  // namespace beampipe

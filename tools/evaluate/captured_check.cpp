@@ -83,8 +83,8 @@ SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const Textu
     fragments.clear();
     sample_raster(samples, list, ignored, fragments);
     if (!shader.is_flat()) {
-      const std::vector<glm::vec2> places(fragments.size(), at);
-      alpha_test(whole_shader, {whole, first, AlphaCoverage::test, places}, ignored, fragments);
+      const std::vector<glm::vec2> centres(fragments.size(), glm::vec2(0.5f));
+      alpha_test(whole_shader, {whole, first, AlphaCoverage::test, centres}, ignored, fragments);
     }
     ordered_test(samples, rules, ignored, surface, fragments, accesses);
     for (const OrderedAccess& access : accesses)

@@ -22,7 +22,8 @@ struct SampledDepths {
 };
 
 // Draws everything in the API's order, at the first of as many samples as the program had: with one, at the pixel's
-// centre. Cutouts are tested there.
+// centre. Shaders run at the pixel's centre, so that cutouts are tested there. (Which samples alpha to coverage takes
+// is the driver's own choice. Here it takes the sample as if there were no others.)
 // `textures`: of the trace; may be null if the frame's draws have none.
 SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "stages/geometry/draw_plan.h"
+#include "tools/files/format.h"
 
 namespace beampipe {
 
@@ -53,14 +54,11 @@ void add_stopped(const Trace& trace, std::size_t frame, const std::string& spec,
 }
 
 std::string text_of(const DrawNote& note) {
-  const auto counted = [](std::uint64_t count, const char* name) {
-    return std::to_string(count) + ' ' + name + (count == 1 ? "" : "s");
-  };
   const char* const verb =
       note.left_out ? (note.draws == 1 ? " is left out: " : " are left out: ")
                     : (note.draws == 1 ? " is drawn in the nearest way: " : " are drawn in the nearest way: ");
-  return counted(note.draws, "draw") + " (" + counted(note.triangles, "triangle") + ')' + verb + note.reason +
-         (note.invocations > 0 ? ": " + counted(note.invocations, "invocation") : "");
+  return with_noun(note.draws, "draw") + " (" + with_noun(note.triangles, "triangle") + ')' + verb + note.reason +
+         (note.invocations > 0 ? ": " + with_noun(note.invocations, "invocation") : "");
 }
 
 Form<std::vector<DrawNote>> notes_form() {

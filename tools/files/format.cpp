@@ -14,4 +14,8 @@ std::string format(const char* pattern, ...) {
   return text;
 }
 
+std::string with_noun(std::uint64_t number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
+}
+
 }  // namespace beampipe

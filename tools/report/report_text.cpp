@@ -22,6 +22,8 @@ std::string number_text(std::string_view key, double value) {
   return format(key == "psnr" ? "%.2f" : key == "rel_mse" ? "%.3g" : "%.6f", value);
 }
 
+std::string bytes_text(double bytes) { return format(bytes > 0 && bytes < 1 ? "%.2g" : "%.0f", bytes); }
+
 // The median of the frames' medians.
 double median_ms(const TechniqueReport& result) {
   std::vector<double> medians;
@@ -68,8 +70,7 @@ std::string table_text(const Report& report, const std::string& folder) {
   rows[0].insert(rows[0].end(), {"wall ms", "picture"});
   for (const TechniqueReport& result : report.results) {
     std::vector<std::string>& row = rows.emplace_back();
-    row = {result.technique, format("%.0f", result.on_chip_bytes_per_pixel()),
-           format("%.0f", result.peak_bytes_per_pixel())};
+    row = {result.technique, bytes_text(result.on_chip_bytes_per_pixel()), bytes_text(result.peak_bytes_per_pixel())};
     if (compared) {
       const ErrorStats& error = result.error.value();
       row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),

@@ -325,6 +325,8 @@ TEST_F(ProgramTest, InfoTellsWhatWasCaptured) {
   mesh.triangles = {{0, 1, 2}};
   mesh.colors = {kDefaultColor};
   trace.meshes = {mesh};
+  trace.images = {{.name = "captured", .width = 1, .height = 1, .texels = std::vector<glm::u8vec4>(1)}};
+  trace.program_images = {{.name = "wood", .format = TexelFormat::R8_UNORM, .width = 2, .levels = 1, .texels = {0, 0}}};
   Frame& frame = trace.frames.emplace_back();
   frame.width = frame.height = 4;
   frame.draws.resize(2);
@@ -338,11 +340,13 @@ TEST_F(ProgramTest, InfoTellsWhatWasCaptured) {
                        {"/source/frame", 7},
                        {"/frames/0/state", {{"no depth test", 1}}},
                        {"/frames/0/capture/left_out/0/primitives", 40},
+                       {"/images", Parsed::parse(R"([{"name": "captured", "width": 1, "height": 1},
+                                                     {"name": "wood", "width": 2, "height": 1}])")},
                        {"/frames/0/bounds/max", {2.0, 1.0, 1.0}}});  // x / w
   expect_parts(succeed({"info", path("captured.json")}),
                {"captured from gears, OpenGL, 2026-01-02, frame 7", "colours: own", "no depth test       1",
                 "shadow map  512 x 512      3         99    no  not shown", "lines         2          40",
-                "1 meshes of 1 triangles, 0 images"});
+                "1 mesh of 1 triangle, 2 images"});
 }
 
 TEST_F(ProgramTest, MakeWritesBinaryArrays) {

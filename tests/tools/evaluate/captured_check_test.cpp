@@ -75,6 +75,22 @@ TEST(CapturedCheck, LooksAtTheFirstSample) {
   EXPECT_NEAR(sampled_depths(trace, trace.frames[0], nullptr).depth[0], 0.5 + 0.25 * 0.375 / kSize, 1e-9);
 }
 
+// A pixel's shader runs at its centre, whatever the places of its samples: alpha grows by 1/8 per pixel, and the cutout
+// begins between the first sample of pixel 4 and its centre.
+TEST(CapturedCheck, CutoutsAreTestedAtTheCentre) {
+  Trace trace = empty_trace();
+  trace.frames[0].capture.pictures.samples = 4;
+  add_quad(trace, {0, 0}, {8, 8}, 0.5f);
+  trace.meshes[0].vertex_colors = {{1, 1, 1, 0}, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 0}};
+  Material& cutout = trace.materials.emplace_back();
+  cutout.alpha_mode = AlphaMode::mask, cutout.alpha_cutoff = 4.4375f / kSize;
+  trace.frames[0].draws[0].material = 0;
+  const TextureSet textures(trace);
+  const SampledDepths found = sampled_depths(trace, trace.frames[0], &textures);
+  EXPECT_EQ(found.draw[3], kNoDraw);
+  EXPECT_EQ(found.draw[4], 0u);
+}
+
 // Only what is drawn after the last clear is in the program's depth buffer at the end.
 TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   Trace trace = empty_trace();

@@ -246,11 +246,16 @@ TEST(Table, HasErrorsAfterCompare) {
   report.results.push_back(report.results[0]);
   report.results[1].technique = "beam";
   report.results[1].equivalent_msaa = EquivalentMsaa{256, true, false};
+  FrameReport in_bins = first.front();
+  in_bins.bin_pixels = 256;  // 64 bytes of pairs
+  FrameReports second;
+  second.push_back(in_bins);
+  report.results[1].frames = second;
   EXPECT_EQ(table_text(report, "out"),
             "technique  B/px on chip  off chip      RMSE       bias      p99      max    EMR  wall ms  picture\n"
             "msaa:8                0        92  0.125000  -0.250000  0.50000  1.00000      8      8.0  "
             "out/msaa_8/frame_0004.png\n"
-            "beam                  0        92  0.125000  -0.250000  0.50000  1.00000  ≥ 256      8.0  "
+            "beam               0.25        92  0.125000  -0.250000  0.50000  1.00000  ≥ 256      8.0  "
             "out/msaa_8/frame_0004.png\n");
 }
 
