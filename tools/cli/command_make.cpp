@@ -113,7 +113,7 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
   write_trace(trace, file, arguments.binary ? ArrayStorage::binary : ArrayStorage::text);
   std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "
             << arguments.options.height << " pixels\n";
-  if (is_model && camera) std::cout << "camera: " << text_of(*camera) << "\n";
+  if (is_model && camera) std::cout << "camera: " << text_of(*camera, arguments.model, command) << "\n";
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ void preview(const PreviewArguments& arguments, const Command& command, Interrup
   output.write(file.filename(), encode_png(technique.render(trace, arguments.frame, options).image));
   output.keep();
   std::cout << arguments.output << ": " << frame.width << " x " << frame.height << " pixels\n";
-  if (frame.camera) std::cout << "camera: " << text_of(*frame.camera) << "\n";
+  if (frame.camera) std::cout << "camera: " << text_of(*frame.camera, arguments.model, command) << "\n";
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #include "tools/cli/model_trace.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <optional>
-#include <sstream>
 
 #include "tools/cli/camera_file.h"
 #include "tools/cli/framing.h"
@@ -113,6 +114,14 @@ void remove_light(Trace& trace) {
   for (Material& material : trace.materials) material.unlit = true;
 }
 
+// As many digits as tell the number from all others.
+std::string text_of(double number) {
+  char digits[32];
+  return {digits, std::to_chars(digits, std::end(digits), number).ptr};
+}
+
+std::string text_of(const glm::dvec3& v) { return text_of(v.x) + "," + text_of(v.y) + "," + text_of(v.z); }
+
 }  // namespace
 
 Option add_model_options(Command& command, ModelOptions& options) {
@@ -212,16 +221,14 @@ Trace trace_of_model(const std::string& file, const ModelOptions& options, const
   return std::move(trace);
 }
 
-std::string text_of(const Camera& camera) {
-  std::ostringstream text;
-  const auto put = [&text](const char* option, const glm::dvec3& v) {
-    text << option << v.x << "," << v.y << "," << v.z;
-  };
-  put("--eye ", camera.eye);
-  put(" --target ", camera.target);
-  if (camera.up != glm::dvec3(0, 1, 0)) put(" --up ", camera.up);
-  text << " --fovy " << camera.fovy_deg;
-  return text.str();
+std::string text_of(const Camera& camera, const ModelOptions& options, const Command& command) {
+  const CameraWishes wishes = wishes_of(options, command);
+  std::string text = "--eye " + text_of(camera.eye) + " --target " + text_of(camera.target);
+  if (camera.up != glm::dvec3(0, 1, 0)) text += " --up " + text_of(camera.up);
+  text += " --fovy " + text_of(camera.fovy_deg);
+  if (wishes.near) text += " --near " + text_of(camera.near);
+  if (wishes.far) text += " --far " + text_of(camera.far);
+  return text;
 }
 
 }  // namespace beampipe

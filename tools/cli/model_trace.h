@@ -39,7 +39,8 @@ struct ModelFrames {
 Trace trace_of_model(const std::string& model, const ModelOptions& options, const Command& command,
                      const ModelFrames& frames);
 
-// The camera as options: "--eye 3,2,5 --target 0,1,0 --fovy 36".
-std::string text_of(const Camera& camera);
+// The camera of a trace made with these options, as options that make the same one: "--eye 3,2,5 --target 0,1,0 --fovy
+// 36", and the planes that the user chose.
+std::string text_of(const Camera& camera, const ModelOptions& options, const Command& command);
 
 }  // namespace beampipe

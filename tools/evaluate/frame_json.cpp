@@ -116,6 +116,9 @@ Form<WallTime> wall_form() {
       .written("runs", &WallTime::runs, form::count(1), "Timed runs.")
       .written("with_memory_model", &WallTime::with_memory_model, form::boolean(),
                "The timed runs also modelled caches and DRAM.")
+      .written(
+          "kept", [](const WallTime& wall) { return wall.kept ? std::optional(true) : std::nullopt; }, form::boolean(),
+          "These are times of an earlier run, whose picture was kept.")
       .written("modelling_run", &WallTime::modelling_run, form::amount(),
                "Time of the additional run that modelled them.");
 }
@@ -125,7 +128,8 @@ WallTime wall_time_of(const Json& json) {
                 .min = json.at("min").get<double>(),
                 .max = json.at("max").get<double>(),
                 .runs = json.at("runs").get<int>(),
-                .with_memory_model = json.at("with_memory_model").get<bool>()};
+                .with_memory_model = json.at("with_memory_model").get<bool>(),
+                .kept = json.value("kept", false)};
   if (const Json* modelling_run = json.find("modelling_run")) wall.modelling_run = modelling_run->get<double>();
   return wall;
 }

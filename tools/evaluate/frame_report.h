@@ -20,6 +20,7 @@ struct WallTime {
   double median = 0, min = 0, max = 0;
   int runs = 0;
   bool with_memory_model = false;  // the timed runs also modelled caches and DRAM
+  bool kept = false;               // of an earlier run, whose picture was kept
   // The time of one additional run, which modelled memory and gave all counts. None if the timed runs model memory
   // themselves, or if memory is not modelled.
   std::optional<double> modelling_run = {};

@@ -121,7 +121,10 @@ namespace {
 KeptPicture kept_or_rendered(const Rendering& run, const RunPlan& plan, Progress& progress) {
   const std::string& spec = run.technique.spec;
   if (plan.pictures)
-    if (std::optional<KeptPicture> found = plan.pictures->find(spec, run.frame, run.colors)) return std::move(*found);
+    if (std::optional<KeptPicture> found = plan.pictures->find(spec, run.frame, run.colors)) {
+      found->report.wall_ms.kept = true;
+      return std::move(*found);
+    }
   TimedResult timed = render_timed(plan, run, progress);
   KeptPicture rendered{std::move(timed.result.image), {}};
   FrameReport& report = rendered.report;
@@ -190,7 +193,8 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = on_threads(plan.options.threads, [&] {
-      return measure_named_error(spec, index, result.image, *reference, pixels_per_degree);
+      return measure_named_error(frame.spec, frame.index, frame.result.image, *frame.reference,
+                                 frame.pixels_per_degree);
     });
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }

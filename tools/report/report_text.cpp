@@ -24,11 +24,14 @@ std::string number_text(std::string_view key, double value) {
 
 std::string bytes_text(double bytes) { return format(bytes > 0 && bytes < 1 ? "%.2g" : "%.0f", bytes); }
 
-// The median of the frames' medians.
-double median_ms(const TechniqueReport& result) {
+// The median of the frames' medians. Times of earlier runs are not told.
+std::string wall_text(const TechniqueReport& result) {
   std::vector<double> medians;
-  for (const FrameReport& frame : result.frames) medians.push_back(frame.wall_ms.median);
-  return wall_time(std::move(medians)).median;
+  for (const FrameReport& frame : result.frames) {
+    if (frame.wall_ms.kept) return "kept";
+    medians.push_back(frame.wall_ms.median);
+  }
+  return format("%.1f", wall_time(std::move(medians)).median);
 }
 
 std::string pictures(const TechniqueReport& result, const std::string& folder) {
@@ -83,7 +86,7 @@ std::string table_text(const Report& report, const std::string& folder) {
                              format("%.6f", parts.shading)});
     }
     if (moves) row.push_back(format("%.6f", result.flicker.value_or(0.0)));
-    row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});
+    row.insert(row.end(), {wall_text(result), pictures(result, folder)});
   }
   return align_columns(rows, {0, rows[0].size() - 1});
 }

@@ -140,11 +140,12 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
                                    : "operations, millions per frame"};
   std::string left_out;
   for (const Json& stage : stage_records(report)) {
-    if (stage.at("technique") != technique) continue;
+    const Json* const times = stage.find("modelled_ms");  // those of references have none
+    if (stage.at("technique") != technique || (roof && !times)) continue;
     const std::string name = stage.at("stage").get<std::string>();
     const double ops = stage.at("ops").at("total").get<double>(),
                  bytes = stage.at(roof ? "dram_bytes" : "logical_bytes").get<double>();
-    const double ms = roof ? stage.at("modelled_ms").at(roof->implementation).get<double>() : 1;
+    const double ms = roof ? times->at(roof->implementation).get<double>() : 1;
     if (ops > 0 && bytes > 0 && ms > 0) {
       const double height = roof ? ops / ms / 1e6 : ops / kMega;
       plot.series.push_back({name, stage_color(name), {{ops / bytes, height, name}}});

@@ -39,6 +39,14 @@ class ViewTest : public ProgramTest {
   Parsed frame_of(const std::string& trace) const {
     return Parsed::parse(read_text(folder_ / trace)).at("frames").at(0);
   }
+  // The text of this model's trace with the camera that was told.
+  std::string made_again(const std::string& told, const std::string& model) const {
+    std::istringstream words(told.substr(told.find("camera: ") + 8));
+    Names again = {"make", path(model), "-o", path("again.json")};
+    for (std::string word; words >> word;) again.push_back(word);
+    succeed(again);
+    return read_text(folder_ / "again.json");
+  }
   Image picture(const std::string& folder) const { return read_exr(folder_ / folder / "msaa_4/frame_0000.exr"); }
 };
 
@@ -69,16 +77,21 @@ TEST_F(ViewTest, MakeStandsInsideOfARoomAndSaysSo) {
 
   const std::string outside = succeed({"make", path("room.obj"), "--view", "outside", "-o", path("room.json")});
   EXPECT_GT(frame_of("room.json")["camera"]["eye"][2], 5.0);
-  // What it prints are options that make the same camera.
-  const std::string options = outside.substr(outside.find("camera: ") + 8);
-  std::istringstream words(options);
-  std::vector<std::string> again = {"make", path("room.obj"), "-o", path("again.json")};
-  for (std::string word; words >> word;) again.push_back(word);
-  ASSERT_EQ(again.size(), 10u) << options;
-  succeed(again);
-  for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR(frame_of("again.json")["camera"]["eye"][i].get<double>(),
-                frame_of("room.json")["camera"]["eye"][i].get<double>(), 1e-4);
+  made_again(outside, "room.obj");
+  for (const char* const key : {"eye", "target", "up", "fovy_deg"})
+    EXPECT_EQ(frame_of("again.json")["camera"][key], frame_of("room.json")["camera"][key]) << key;
+}
+
+TEST_F(ViewTest, MakePrintsTheCameraThatItWasGiven) {
+  const std::string told = succeed({"make", path("model.obj"), "--eye", "0.1234567891,2,9", "--up", "0.5,2,0", "--near",
+                                    "0.25", "--far", "70", "-o", path("model.json")});
+  EXPECT_NE(told.find("camera: --eye 0.1234567891,2,9 --target "), std::string::npos) << told;
+  EXPECT_NE(told.find(" --up 0.5,2,0 --fovy 36 --near 0.25 --far 70\n"), std::string::npos) << told;
+  EXPECT_EQ(made_again(told, "model.obj"), read_text(folder_ / "model.json"));
+  write_text(folder_ / "planes.json", R"({"eye": [1, 2, 9], "target": [1, 1, 0], "near": 0.25, "far": 70})");
+  const std::string from_file =
+      succeed({"make", path("model.obj"), "--camera", path("planes.json"), "-o", path("model.json")});
+  EXPECT_NE(from_file.find("camera: --eye 1,2,9 --target 1,1,0 --fovy 36 --near 0.25 --far 70\n"), std::string::npos);
 }
 
 TEST_F(ViewTest, MakeTakesACameraFromAFile) {

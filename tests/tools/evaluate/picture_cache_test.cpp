@@ -100,8 +100,10 @@ TEST(PictureCache, ChangesNothingInAFrame) {
   const Technique reference = parse_technique(kReferenceSpec);
   const FrameResult rendered = render_kept(reference, plan, 0, silent);  // nothing is kept yet
   plan.pictures = std::make_shared<PictureCache>(folder / "cache", plan.trace);
-  for (const char* const which : {"first", "kept"}) {
-    const FrameResult found = render_kept(reference, plan, 0, silent);
+  for (const std::string which : {"first", "kept"}) {
+    WallTime time;
+    const FrameResult found = render_kept(reference, plan, 0, silent, &time);
+    EXPECT_EQ(time.kept, which == "kept");
     EXPECT_EQ(found.image.rgba, rendered.image.rgba) << which;
     EXPECT_EQ(found.bin_operations, rendered.bin_operations) << which;
     EXPECT_EQ(found.bin_pixels, rendered.bin_pixels) << which;

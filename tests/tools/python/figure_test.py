@@ -39,16 +39,36 @@ class Figure(InFolder):
         self.assertEqual([each for each in comments if each in ("msaa:8", "beam", "reference", "fence", "bars")],
                          ["msaa:8", "beam", "reference", "fence"] + ["msaa:8", "beam", "reference", "bars"])
         report = beampipe.Report(self.folder / "fence")
-        self.assertIn(f"RMSE {1000 * report['beam']['error']['rmse']:.3g} × 10⁻³", comments)
+        digits, exponent = f"{report['beam']['error']['rmse']:.2e}".split("e-")
+        self.assertIn(f"RMSE {digits}e-{int(exponent)}", comments)
         self.assertIn("EMR 8", comments)
         # Two scenes of three pictures and two maps, each with a crop, and a scale each.
         self.assertEqual(text.count("<image "), 2 * (2 * 5 + 1))
+
+    def test_it_says_what_it_wrote_and_its_crops(self):
+        told = self.run_program("figure", "fence", "bars", "--crop", "10,5,12,8", "--crop", "1,2,3,4", "-o", "told.svg", "--tex",
+                                "told.tex")
+        self.assertEqual(told, "figure: told.svg\nfence: --crop 10,5,12,8 --crop 1,2,3,4\n"
+                               "bars: --crop 10,5,12,8 --crop 1,2,3,4\ntable: told.tex\n")
+        told = self.run_program("figure", "fence", "-o", "chosen.svg")
+        crops = re.fullmatch(r"figure: chosen.svg\nfence: (--crop \d+,\d+,9,9) (--crop \d+,\d+,9,9)\n", told).groups()
+        self.run_program("figure", "fence", "-o", "named.svg", *" ".join(crops).split())
+        self.assertEqual((self.folder / "named.svg").read_bytes(), (self.folder / "chosen.svg").read_bytes())
+
+    def test_other_references_are_shown_if_they_are_named_and_msaa_has_lists(self):
+        self.run_program("compare", "fence.json", "-t", "msaa:2,8", "--reference-error", "--ladder", "1,2,4,8", "-o", "two")
+        for wanted, expected in (([], ["msaa:2", "msaa:8"]), (["-t", "reference:set=2", "msaa:8,2"],
+                                                              ["reference:set=2", "msaa:8", "msaa:2"])):
+            self.run_program("figure", "two", *wanted, "-o", "two.svg", "--tex", "two.tex")
+            self.assertEqual(re.findall(r"& (\S+:\S+) &", (self.folder / "two.tex").read_text()), expected)
 
     def test_the_table_is_that_of_the_report(self):
         self.run_program("figure", "fence", "-o", "t.svg", "--tex", "t.tex")
         table, report = (self.folder / "t.tex").read_text(), beampipe.Report(self.folder / "fence")
         for name in ("beam", "msaa:2", "msaa:8"):
-            self.assertRegex(table, rf"{name} & {1000 * report[name]['error']['rmse']:.2f} & .* \\\\")
+            rmse, = re.findall(rf"{name} & ([\d.]+) & .* \\\\", table)
+            self.assertAlmostEqual(float(rmse), 1000 * report[name]["error"]["rmse"], delta=0.005 * float(rmse))
+            self.assertEqual(len(rmse.replace(".", "").lstrip("0")), 3, rmse)  # digits
         self.assertIn(r"msaa:8 & ", table)
         self.assertIn("\\toprule", table)
         latex = shutil.which("pdflatex")
@@ -76,6 +96,8 @@ class Figure(InFolder):
                 (1, "expected a frame from 0 to 0, found 1", ["fence", "--frame", "1", "-o", "old.svg"]),
                 (1, "no/old.svg: cannot be written: No such file or directory", ["fence", "-o", "no/old.svg"]),
                 (1, "ffmpeg failed: no such codec", ["fence", "-o", "old.mp4"]),
+                (1, "figure: 3 techniques and the reference need 2.3 inches for their texts, found 2, where 2 techniques fit",
+                 ["fence", "--inches", "2", "-o", "old.svg"]),
                 (2, "--frame 1: a film shows all frames", ["fence", "--frame", "1", "-o", "old.mp4"]),
                 (2, "expected a name that ends in .svg, .pdf, .png or .mp4", ["fence", "-o", "old.jpg"]),
                 (2, "expected X,Y,WIDTH,HEIGHT in pixels", ["fence", "--crop", "1,2,3", "-o", "old.svg"]),
@@ -136,11 +158,75 @@ class Crops(unittest.TestCase):
     def test_a_picture_of_one_crop(self):
         self.assertEqual(figures.where_techniques_differ(self.scene(numpy.ones((6, 6)))), [(0, 0, 6, 6)])
 
-    def test_names_are_made_safe_for_latex(self):
-        column = figures.Column("a_b%{", numpy.zeros((1, 1, 3)), numpy.zeros((1, 1)), 0.00123456,
-                                beampipe.Rate(1024, is_lower_bound=True))
-        table = figures.booktabs([figures.Scene("s&t", [column])])
-        self.assertIn("s\\&t & a\\_b\\%\\{ & 1.23 & $\\geq$\\,1024 \\\\", table)
+    def test_crops_are_at_least_a_square_apart(self):
+        errors = numpy.zeros((60, 90))
+        errors[20:30, 20:30] = 9
+        errors[20:30, 39:49] = 8
+        errors[20:30, 70:80] = 1
+        self.assertEqual(figures.where_techniques_differ(self.scene(errors)), [(20, 20, 10, 10), (40, 20, 10, 10)])
+
+
+class Numbers(unittest.TestCase):
+    def test_tables_have_three_digits_ranges_and_names_that_are_safe_for_latex(self):
+        for rmse, rate, expected in ((0.00123456, beampipe.Rate(1024, is_lower_bound=True), r"1.23 & $\geq$\,1024 \\"),
+                                     (0.0017, beampipe.Rate(50.84, low=41.07, high=62.8), r"1.70 & 50.8 (41.1--62.8) \\"),
+                                     (0.00038, beampipe.Rate(150, low=99.6), r"0.380 & 150 (99.6--) \\"),
+                                     (0.009996, beampipe.Rate(8), r"10.0 & 8 \\"), (0.5, None, r"500 & -- \\")):
+            column = figures.Column("a_b%{", numpy.zeros((1, 1, 3)), numpy.zeros((1, 1)), rmse, rate)
+            self.assertIn("s\\&t & a\\_b\\%\\{ & " + expected + "\n",
+                          figures.booktabs([figures.Scene("s&t", [column])]))
+
+
+class Pages(unittest.TestCase):
+    def scene(self, picture, *names):
+        return figures.Scene("s", [figures.Column(name, picture, picture[..., 0], 0.00123, beampipe.Rate(8))
+                                   for name in names] + [figures.Column("reference", picture)])
+
+    def drawn(self, *arguments, **how):
+        figure = figures.draw(*arguments, **how)
+        figure.set_dpi(figures.DOTS_PER_INCH)
+        figure.canvas.draw()
+        return figure, numpy.asarray(figure.canvas.buffer_rgba())
+
+    def inside(self, figure, dots):
+        """The first picture without its frame."""
+        (x0, y0), (x1, y1) = dots.shape[1::-1] * figure.axes[0].get_position().get_points()
+        return dots[round(dots.shape[0] - y1) + 4:round(dots.shape[0] - y0) - 4, round(x0) + 4:round(x1) - 4, :3]
+
+    def test_pixels_below_dots_are_means_in_linear_light(self):
+        stripes = numpy.zeros((900, 1600, 3))
+        stripes[:, ::2] = 1
+        figure, dots = self.drawn([self.scene(stripes, "a")], crops=[], width=2)
+        inside = self.inside(figure, dots)
+        self.assertGreater(inside.size, 3 * 200 * 100)
+        # 0.5 is 187.52 in sRGB; a dot of 5.9 pixels has up to half a pixel more of one colour.
+        half = [255 * (1.055 * (0.5 + side * 0.5 / 5.9) ** (1 / 2.4) - 0.055) for side in (-1, 1)]
+        self.assertGreater(inside.min(), half[0] - 1)
+        self.assertLess(inside.max(), half[1] + 1)
+        self.assertAlmostEqual(inside.mean(), 187.5, delta=1)
+
+    def test_pixels_above_dots_are_squares(self):
+        board = numpy.indices((9, 16)).sum(0)[..., None] % 2 * numpy.ones(3)
+        inside = self.inside(*self.drawn([self.scene(board, "a")], crops=[], width=2))
+        self.assertEqual(numpy.unique(inside).tolist(), [0, 255])
+
+    def test_texts_stay_in_their_columns(self):
+        picture = numpy.ones((9, 16, 3))
+        for width, names in ((7, ["beam", "casav:depths=positions,overlap=unbounded", "c", "d", "e", "f", "g"]),
+                             (3.3, ["beam", "msaa:8", "msaa:32", "msaa:256"]), (1.5, ["msaa:256"])):
+            figure, dots = self.drawn([self.scene(picture, *names)], crops=[(0, 0, 4, 4)], width=width)
+            renderer = figure.canvas.get_renderer()
+            texts = [text for text in figure.texts if text.get_text() and text.get_rotation() == 0]
+            boxes = [text.get_window_extent(renderer) for text in texts]
+            boxes += [axes.xaxis.get_tightbbox(renderer) for axes in figure.axes if axes.get_xlabel()]
+            self.assertEqual(len(boxes), 2 * len(names) + 2)
+            for i, box in enumerate(boxes):
+                self.assertGreaterEqual(box.x0, 0)
+                self.assertLessEqual(box.x1, dots.shape[1])
+                for other in boxes[:i]:
+                    self.assertFalse(box.overlaps(other), (width, i))
+            self.assertGreaterEqual(min(text.get_fontsize() for text in texts), figures.SMALLEST)
+            self.assertEqual("".join(texts[-1].get_text().split()), "reference")
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 """Tests of the Python package with the compiled module: package_test.py PROGRAM PACKAGE_FOLDER"""
 import inspect
 import json
+import math
 import os
 import pathlib
 import signal
@@ -90,6 +91,10 @@ class Closed(unittest.TestCase):
         self.assertTrue(beampipe.equivalent_rate(2, ladder).is_upper_bound)
         self.assertEqual(str(beampipe.equivalent_rate(2, ladder)), "< 1")
 
+    def test_a_rate_is_told_with_its_range(self):
+        for low, high, expected in ((None, None, "12.3"), (10.06, 150.4, "12.3 (10.1..150)"), (10, None, "12.3 (10..)")):
+            self.assertEqual(str(beampipe.Rate(12.345, low=low, high=high)), expected)
+
 
 class Program(InFolder):
     """What the program does, without files."""
@@ -125,13 +130,14 @@ class Program(InFolder):
     def test_stages_and_bytes_are_those_of_the_report(self):
         for spec in self.specs:
             of_program = self.report.frames(spec)[0]
-            found = beampipe.render(self.trace, spec)
+            found, second = beampipe.render(self.trace, spec, frames=None)
             self.assertEqual(found.dram_bytes, of_program["dram_bytes"])
             for stage in of_program["stages"]:
                 for name, value in found.stages[stage["stage"]].items():
                     key, _, kind = name.partition(".")
                     self.assertEqual(value, stage[key][kind] if kind else stage[key], name)
-            self.assertEqual(found.bytes_in_memory + found.bytes_on_chip > 0, True)
+            for key in ("on_chip_bytes_per_pixel", "off_chip_bytes_per_pixel"):
+                self.assertEqual(max(getattr(found, key), getattr(second, key)), self.report[spec][key])
             for way, times in of_program["modelled_ms"].items():
                 self.assertEqual({key: found.times[way][key] for key in ("in_turn", "on_cores", "at_once")},
                                  {key: times[key] for key in ("in_turn", "on_cores", "at_once")})
@@ -156,12 +162,17 @@ class Program(InFolder):
         self.assertIn("msaa:8", found.table())
 
     def test_the_range_of_a_rate_by_rmse_is_that_of_the_program(self):
-        self.run_program("compare", "fence.json", "-t", *self.specs, "-o", "by_rmse")
-        found, report = beampipe.compare(self.trace, self.specs), beampipe.Report(self.folder / "by_rmse")
+        self.run_program("compare", "fence.json", "-t", *self.specs, "--reference-error", "-o", "by_rmse")
+        report = beampipe.Report(self.folder / "by_rmse")
+        found = beampipe.compare(self.trace, self.specs, reference_error=True)
+        self.assertEqual([each.name for each in found], [*self.specs, "reference:set=2"])
+        self.assertEqual(found.reference_error, report.json["reference_error"])
+        self.assertEqual([n for n, _ in found.ladder], [rung["samples"] for rung in report.json["msaa_ladder"]])
         for each in found:
             result = report[each.name]
             for end in ("low", "high"):
                 self.assertAlmostEqual(getattr(each.rate, end) or 0, result.get(f"equivalent_msaa_{end}") or 0, places=12)
+        self.assertRegex(found.table(), rf"beam:pool=60 .* {found['beam:pool=60'].rate.low:.3g}\.\.")
 
     def test_options_are_keywords(self):
         self.assertEqual(beampipe.spec("beam", pool=60), "beam:pool=60")
@@ -196,6 +207,10 @@ class Own(unittest.TestCase):
         truth = found.reference[0].picture.astype(float)
         self.assertAlmostEqual(found["<lambda>"].error, numpy.sqrt(numpy.mean(truth ** 2)), places=12)
         self.assertTrue(found["doubled"].rate.is_upper_bound)
+
+    def test_lists_of_msaa(self):
+        found = beampipe.compare(self.trace, ["msaa:1,4", "msaa:2"], ladder=[1])
+        self.assertEqual(list(found.results), ["msaa:1", "msaa:4", "msaa:2"])
 
     def test_a_metric_finds_rates(self):
         def worst(image, reference):
@@ -288,6 +303,12 @@ class Merges(unittest.TestCase):
             beampipe.render(trace, beampipe.Merge(lambda fragments: [1, 1, 1], name="rgb"))
         with self.assertRaisesRegex(beampipe.Error, r"A from 0 to 1, found \[0. 0. 0. 2.\]"):
             beampipe.render(trace, beampipe.Merge(lambda fragments: [0, 0, 0, 2]))
+        for rule in (lambda fragments: fragments["colour"][0], lambda fragments: fragments[0]["colour"]):
+            with self.assertRaisesRegex(beampipe.Error, "mine: no field of name colour: expected area, depth, plane, front, "
+                                                        "color, mask"):
+                beampipe.render(trace, beampipe.Merge(rule, name="mine"))
+        with self.assertRaisesRegex(ValueError, "^math domain error"):
+            beampipe.render(trace, beampipe.Merge(lambda fragments: math.sqrt(-1)))
         with self.assertRaisesRegex(beampipe.Error, "positions: expected 32, 64, 128 or 256, found 8"):
             beampipe.Merge(over, positions=8)
         with self.assertRaisesRegex(beampipe.Error, "rule: expected a function, found str"):
@@ -339,7 +360,8 @@ class OwnProgram(InFolder):
         return found.stdout
 
     def test_commands_know_them(self):
-        self.assertRegex(self.run_own("run", "--help"), r"(?s)dim\s+half of msaa:4 \(mine.py\)")
+        for name, what in (("dim", "half of msaa:4"), ("centre", "a technique of one's own")):
+            self.assertRegex(self.run_own("run", "--help"), rf"{name}\s+{what} \(mine.py\)")
         compare = ("compare", "fence.json", "--ladder", "1,4", "-t", "dim", "nearest", "centre", "msaa:1", "-o", "out")
         self.run_own(*compare)
         report = beampipe.Report(self.folder / "out")
@@ -408,6 +430,7 @@ class Errors(unittest.TestCase):
         self.check("cannot be 8 x 4 pixels", lambda: beampipe.render(trace, "beam", width=8, height=4))
         self.check("no/trace.json", lambda: beampipe.open_trace("no/trace.json"))
         self.check("fenc", lambda: beampipe.make("fenc"))
+        self.check("a model: expected a scene; `beampipe make a/b.obj -o b.json`", lambda: beampipe.make("a/b.obj"))
         self.check("indices from 0 to 2", lambda: make(points, [[0, 1, 3]], **size))
         self.check("indices from 0 to 2", lambda: make(points, [[0, 1, -1]], **size))
         self.check("triangles: expected an array of integers", lambda: make(points, [[0, 1, 1.5]], **size))

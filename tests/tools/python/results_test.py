@@ -25,6 +25,8 @@ class Module(InFolder):
 
     def test_techniques_in_the_order_of_the_report(self):
         self.assertEqual(self.report.techniques, ["beam", "msaa:8", "reference"])
+        self.assertEqual([result["technique"] for result in self.report], self.report.techniques)
+        self.assertEqual(len(self.report), 3)
 
     def test_pictures_have_the_errors_that_the_report_states(self):
         for technique in ("beam", "msaa:8"):

@@ -163,6 +163,15 @@ TEST_F(ReportParts, RooflineLiesUnderTheRoof) {
   EXPECT_EQ(roof[2].y, 100);
 }
 
+TEST_F(ReportParts, ATechniqueWithoutModelledTimesHasNoRoofline) {  // as `compare --reference-error` adds one
+  const ReportFile report = read(report_with(R"({"technique": "reference")", R"({"technique": "reference:set=2",
+    "peak_bytes_per_pixel": 1, "frames": [{"wall_ms": {"median": 1}, "stages": [
+      {"stage": "compose", "ops": {"total": 3}, "bytes_read": 1, "bytes_written": 1, "dram_bytes": 1}]}]},
+   )"));
+  ASSERT_EQ(report.techniques.size(), 2u);
+  EXPECT_TRUE(roofline_plot(report, "reference:set=2").series.empty());
+}
+
 TEST_F(ReportParts, WithoutHardwareTheRooflineIsAboutLogicalBytes) {
   const ScatterPlot plot = roofline_plot(read(replaced(kReport, "\"hardware\"", "\"software\"")), "beam");
   ASSERT_EQ(plot.series.size(), 1u);

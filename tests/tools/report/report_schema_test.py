@@ -48,13 +48,14 @@ class SchemaTest(unittest.TestCase):
         cls.addClassCleanup(cls.scratch.cleanup)
         folder = pathlib.Path(cls.scratch.name)
         cls.room, fence = str(folder / "room.json"), str(folder / "fence.json")
-        size = ["--width", "16", "--height", "9"]
+        size, cache = ["--width", "16", "--height", "9"], ["--reference-cache", str(folder / "cache")]
         cls.run_program("make", "room", *size, "--triangles", "1000", "-o", cls.room)
         cls.run_program("make", "fence", *size, "--triangles", "1000", "--frames", "2", "--orbit", "3", "-o", fence)
         runs = {"run": ["run", fence, "--frames", "0", "--repeat", "2", "--material-cost", "10", "-t", "beam", "dvm", "msaa:2,motion"],
                 "no_memory": ["run", fence, "--no-memory-model", "--measure-from", "1", "-t", "beam"],
-                "compare": ["compare", fence, "--reference-error", "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2,4,8,16", "--hardware", "rtx_4090", "-t",
+                "compare": ["compare", fence, "--reference-error", "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2,4,8,16", "--hardware", "rtx_4090", *cache, "-t",
                             "beam", "beam:order=sorted", "casav", "acaa:2", "msaa:1"],
+                "kept": ["compare", fence, "--ladder", "1", *cache, "-t", "msaa:1"],
                 "varying": ["compare", cls.room, "--inspect-worst", "1", "--ladder", "1,2,4,8,16", "--inspect", "8,4", "--metric", "flip", "-t",
                         "beam", "msaa:4"]}
         cls.reports, cls.inspections = {}, {}

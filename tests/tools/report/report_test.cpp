@@ -238,6 +238,17 @@ TEST(Table, HasOneRowPerTechnique) {
             "msaa:8                0        92      9.0  out/msaa_8/frame_0004.png and 1 more\n");
 }
 
+TEST(Table, TellsNoTimeOfAnEarlierRun) {
+  Report report = sample_report();
+  change_frames(report.results[0], [](FrameReport& frame, std::size_t i) { frame.wall_ms.kept = i == 1; });
+  EXPECT_EQ(table_text(report, "out"),
+            "technique  B/px on chip  off chip  wall ms  picture\n"
+            "msaa:8                0        92     kept  out/msaa_8/frame_0004.png and 1 more\n");
+  const Json frames = report_json(report)["results"].at(0)["frames"];
+  EXPECT_FALSE(frames.at(0).at("wall_ms").contains("kept"));
+  EXPECT_EQ(frames.at(1).at("wall_ms").at("kept"), true);
+}
+
 TEST(Table, HasErrorsAfterCompare) {
   Report report = compared_report();
   FrameReports first;

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 version: str
 reference_spec: str
+second_reference_spec: str
 pixels_per_degree: float
 default_rungs: list[int]
 more_rungs: list[int]
@@ -65,4 +66,5 @@ def measure(pictures: list[NDArray], references: list[NDArray], pixels_per_degre
 def map(key: str, picture: NDArray, reference: NDArray, pixels_per_degree: float) -> NDArray[numpy.float32]: ...
 def block_squares(pictures: list[NDArray], references: list[NDArray]) -> list[float]: ...
 def equivalent_rate(error: float, ladder: Sequence[tuple[int, float]],
-                    blocks: Optional[tuple[list[float], list[list[float]]]]) -> dict[str, Any]: ...
+                    blocks: Optional[tuple[list[float], list[list[float]]]],
+                    reference_error: Optional[float]) -> dict[str, Any]: ...

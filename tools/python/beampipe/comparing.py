@@ -1,6 +1,7 @@
 """Errors of techniques against the reference, and the MSAA rates that are as accurate."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Callable, Iterable, Iterator, Optional, Sequence, Union
 
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike
 from . import _native, rendering
 from ._native import Trace
 from .rendering import AnyTechnique, Rendering
-from .results import Error, Rate
+from .results import Error, Rate, each_spec
 
 # The key of a measure (measures.METRICS), or a function of (image, reference), both height x width x 3 in linear light,
 # that returns 0 where they are equal, and more the worse the image is.
@@ -19,7 +20,7 @@ AnyMetric = Union[str, Callable[[numpy.ndarray, numpy.ndarray], float]]
 
 def equivalent_rate(error: float, ladder: Sequence[tuple[int, float]]) -> Rate:
     """The rate at which msaa:N has this error. ladder: (N, error) for rising N."""
-    return Rate(**_native.equivalent_rate(error, ladder, None))
+    return Rate(**_native.equivalent_rate(error, ladder, None, None))
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +36,13 @@ class Result:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Results by name, in the order of the techniques; `ladder` has (N, error by the metric) of msaa:N."""
+    """Results by name, in the order of the techniques; `ladder` has (N, error by the metric) of msaa:N, and
+    `reference_error` the RMSE of the reference itself, if it was measured."""
     metric: str
     results: dict[str, Result]
     reference: list[Rendering]
     ladder: list[tuple[int, float]]
+    reference_error: Optional[float] = None
 
     def __getitem__(self, name: str) -> Result:
         if name not in self.results:
@@ -53,10 +56,11 @@ class Comparison:
         return len(self.results)
 
     def table(self) -> str:
-        """One line for each technique: RMSE x 1000, the error by the metric, and the equivalent rate."""
-        rows = [("technique", "RMSE x 1000", self.metric, "EMR")]
-        rows += [(each.name, f"{1000 * each.errors['rmse']:.3f}", f"{each.error:.4g}", str(each.rate)) for each in self]
-        widths = [max(len(row[column]) for row in rows) for column in range(4)]
+        """One line for each technique: RMSE x 1000, the error by the metric, the equivalent rate and its range."""
+        rows = [("technique", "RMSE x 1000", self.metric, "EMR", "within")]
+        rows += [(each.name, f"{1000 * each.errors['rmse']:.3f}", f"{each.error:.4g}", each.rate.text, each.rate.within)
+                 for each in self]
+        widths = [max(len(row[column]) for row in rows) for column in range(5)]
         return "\n".join("  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows)
 
 
@@ -97,15 +101,18 @@ class _Metric:
 
 def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetric = "rmse",
             frames: Union[int, Iterable[int], None] = None, width: int = 0, height: int = 0, threads: int = 0,
-            ladder: Optional[Sequence[int]] = None, memory_model: bool = False,
+            ladder: Optional[Sequence[int]] = None, memory_model: bool = False, reference_error: bool = False,
             pixels_per_degree: float = _native.pixels_per_degree) -> Comparison:
     """Renders frames (None: all) with techniques and with the reference, and measures how wrong they are.
 
     techniques: as for render(). metric: the measure by which equivalent MSAA rates are found, or a function of (image,
     reference), both height x width x 3, linear, that returns 0 for equal pictures. ladder: MSAA rates to measure
-    (default: 1, 2, 4, ... 256, and 512 and 1024 while a technique is better). pixels_per_degree: of the view, for FLIP.
+    (default: 1, 2, 4, ... 256, and 512 and 1024 while a technique is better). reference_error: render reference:set=2
+    too, measure the reference's own error, and widen the ranges of rates by it. pixels_per_degree: of the view, for FLIP.
     """
-    wanted = [techniques] if isinstance(techniques, str) else list(techniques)
+    wanted = list(each_spec([techniques] if isinstance(techniques, str) else techniques))
+    if reference_error and _native.second_reference_spec not in wanted:
+        wanted.append(_native.second_reference_spec)
     names = [rendering.name_of(each) for each in wanted]
     for name in names:
         if names.count(name) > 1:
@@ -138,16 +145,20 @@ def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetr
         return n, measured.of(renderings)
 
     heights = [rung(n) for n in rungs]
-    others = [error for name, (_, _, error) in found.items() if not own_rungs.get(name)]
+    others = [error for name, (_, _, error) in found.items()
+              if not own_rungs.get(name) and name.split(":")[0] != _native.reference_spec]
     for n in _native.more_rungs if ladder is None else ():
         if not any(error < min(height for _, height in heights) for error in others):
             break
         heights.append(rung(n))
 
+    second = found.get(_native.second_reference_spec)  # two independent references differ by the errors of both
+    own_error = second[1]["rmse"] / math.sqrt(2) if second else None
     results = {}
     for name, (renderings, errors, error) in found.items():
         own = own_rungs.get(name)
         of_blocks = (blocks[name], [blocks[f"msaa:{n}"] for n, _ in heights]) if metric == "rmse" else None
-        rate = Rate(own) if own else Rate(**_native.equivalent_rate(error, heights, of_blocks))
+        rate = Rate(own) if own else Rate(**_native.equivalent_rate(error, heights, of_blocks,
+                                                                    own_error if metric == "rmse" else None))
         results[name] = Result(name, errors, error, rate, renderings)
-    return Comparison(measured.name, results, reference, heights)
+    return Comparison(measured.name, results, reference, heights, own_error)

@@ -1,7 +1,6 @@
 """beampipe figure: a figure for a paper from the folders of `beampipe compare`."""
 import argparse
 import pathlib
-import signal
 import sys
 
 from .results import Error, Report
@@ -52,7 +51,7 @@ def parse(words):
     parser.add_argument("-o", "--output", required=True, metavar="FILE",
                         help="the figure: .svg, .pdf or .png; or .mp4, a film of all frames (needs the program ffmpeg)")
     parser.add_argument("-t", "--technique", nargs="+", action="extend", metavar="SPEC",
-                        help="only these techniques, in this order (default: all)")
+                        help="only these techniques, in this order (default: all but other references)")
     parser.add_argument("--crop", type=_crop, action="append", metavar="X,Y,W,H",
                         help="enlarge these pixels; may be repeated (default: two squares where techniques differ most)")
     parser.add_argument("--frame", type=int, metavar="N", help="the frame of the results (default: 0)")
@@ -86,14 +85,20 @@ def work(arguments):
         figures.film(map(scenes, range(counts.pop())), arguments.output, **how)
     else:
         figures.save(figures.draw(shown, **how), arguments.output)
+    print(f"figure: {arguments.output}")
+    for scene, crops in zip(shown, figures.crops_of(shown, arguments.crop)):
+        print(f"{scene.title}: " + " ".join(f"--crop {x},{y},{w},{h}" for x, y, w, h in crops))
     if arguments.tex:
         figures.write_atomically(arguments.tex, figures.booktabs(shown).encode())
+        print(f"table: {arguments.tex}")
 
 
 def main():
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         work(parse(sys.argv[1:]))
+    except KeyboardInterrupt:
+        print("beampipe: stopped", file=sys.stderr)
+        sys.exit(130)
     except WrongUsage as error:
         sys.exit(_say(error, 2))
     except Error as error:

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import io
 import itertools
+import math
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -22,10 +24,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import Normalize
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
+from matplotlib.textpath import TextPath
 from numpy.typing import NDArray
 
-from .results import Error, Rate, Report
+from .results import Error, Rate, Report, each_spec
 
 if TYPE_CHECKING:
     from .comparing import Comparison
@@ -34,8 +39,10 @@ REFERENCE = "reference"
 ENDINGS = (".svg", ".pdf", ".png")
 WIDTH = 7.0  # inches: two columns of most proceedings
 # The names of techniques are set in Matplotlib's own fonts, which are the same everywhere.
-STYLE = {"font.family": "DejaVu Sans", "font.size": 7, "axes.linewidth": 0.4, "axes.titlesize": 7.5, "pdf.fonttype": 42,
-         "svg.hashsalt": "beampipe", "xtick.major.width": 0.4, "xtick.major.size": 2}
+FONT = "DejaVu Sans"
+STYLE = {"font.family": FONT, "axes.linewidth": 0.4, "pdf.fonttype": 42, "svg.hashsalt": "beampipe",
+         "xtick.major.width": 0.4, "xtick.major.size": 2}
+LARGEST, SMALLEST = 7.0, 5.0  # points: text is as large as fits the columns, and legible
 CROP_COLORS = ("#e69f00", "#56b4e9", "#009e73", "#cc79a7")  # Okabe and Ito's, which most people can tell apart
 MAP = "magma"
 MAP_SHARE = 99.5  # per cent of the errors that the scale of maps shows; the rest has its last colour
@@ -75,7 +82,7 @@ def _column(name: str, picture: NDArray, truth: NDArray, rmse: float, rate: Opti
 
 def scene_of(found: Union[Report, Comparison], *, techniques: Optional[Sequence[str]] = None, frame: int = 0,
              title: str = "") -> Scene:
-    """A frame (counted from 0 within the results) of these techniques (None: all), in this order."""
+    """A frame (counted from 0 within the results) of these techniques (None: all but other references), in this order."""
     if isinstance(found, Report):
         if REFERENCE not in found.techniques:
             raise Error(f"{found.folder}: expected results of `beampipe compare`, found no reference")
@@ -86,10 +93,11 @@ def scene_of(found: Union[Report, Comparison], *, techniques: Optional[Sequence[
         names, count = [each.name for each in found], len(found.reference)
     if not 0 <= frame < count:
         raise Error(f"{title or 'figure'}: expected a frame from 0 to {count - 1}, found {frame}")
-    for name in techniques or ():
+    wanted = list(each_spec(techniques or ()))
+    for name in wanted:
         if name not in names:
             raise Error(f"{title or 'figure'}: expected one of the techniques {', '.join(names)}, found {name}")
-    wanted = list(techniques or names)
+    wanted = wanted or [name for name in names if name.split(":")[0] != REFERENCE]
     if isinstance(found, Report):
         truth = found.picture(REFERENCE, frame)[..., :3]
         columns = [_column(name, found.picture(name, frame)[..., :3], truth, found[name]["error"]["rmse"],
@@ -104,7 +112,7 @@ def scene_of(found: Union[Report, Comparison], *, techniques: Optional[Sequence[
 
 def where_techniques_differ(scene: Scene, count: int = 2) -> list[Crop]:
     """The `count` squares, a sixth of the picture high, over which the errors of techniques differ most from each other
-    (with one technique: are largest). They do not overlap."""
+    (with one technique: are largest). They are at least a square apart."""
     errors = [column.errors for column in scene.columns if column.errors is not None]
     spread = numpy.max(errors, axis=0) - numpy.min(errors, axis=0) if len(errors) > 1 else errors[0]
     height, width = spread.shape
@@ -117,7 +125,7 @@ def where_techniques_differ(scene: Scene, count: int = 2) -> list[Crop]:
             break
         y, x = numpy.unravel_index(numpy.nanargmax(numpy.where(numpy.isfinite(boxes), boxes, numpy.nan)), boxes.shape)
         crops.append((int(x), int(y), side, side))
-        boxes[max(0, y - side + 1):y + side, max(0, x - side + 1):x + side] = -numpy.inf
+        boxes[max(0, y - 2 * side + 1):y + 2 * side, max(0, x - 2 * side + 1):x + 2 * side] = -numpy.inf
     return crops
 
 
@@ -128,9 +136,22 @@ def check_crops(crops: Sequence[Crop], scene: Scene) -> None:
             raise Error(f"crop {x},{y},{w},{h}: expected a part of the {width} x {height} pixels of {scene.title}")
 
 
-def _on_screen(picture: NDArray) -> NDArray:
+def _means(values: NDArray, most: int) -> NDArray:
+    """Of at most so many boxes of one size along the first axis."""
+    count = len(values)
+    if count <= most:
+        return values
+    before = numpy.clip(numpy.linspace(0, count, most + 1)[:, None] - numpy.arange(count), 0, 1)  # a box's upper edge
+    return numpy.tensordot(numpy.diff(before, axis=0), values, 1) * (most / count)
+
+
+def _reduced(values: NDArray, width: int, height: int) -> NDArray:
+    """To at most width x height by means, so that what is thinner than a dot stays."""
+    return _means(_means(values, height).swapaxes(0, 1), width).swapaxes(0, 1)
+
+
+def _on_screen(linear: NDArray) -> NDArray:
     """Bytes in sRGB."""
-    linear = numpy.clip(picture.astype(float), 0, 1)
     encoded = numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return numpy.round(255 * encoded).astype(numpy.uint8)
 
@@ -144,96 +165,166 @@ def _rate_name(metric: str) -> str:
     return "EMR" if metric == "rmse" else f"EMR by {metric}"
 
 
-def _numbers(column: Column, metric: str) -> str:
+def _numbers(column: Column, metric: str) -> list[str]:
     if column.errors is None:
-        return ""
+        return []
     name = _rate_name(metric)
-    rate = f"{name} {column.rate}" if column.rate and not column.rate.does_not_converge else f"no {name}"
-    return f"{rate}\nRMSE {1000 * column.rmse:.3g} × 10⁻³"
+    rate = f"{name} {column.rate.text}" if column.rate and not column.rate.does_not_converge else f"no {name}"
+    digits, exponent = f"{column.rmse:.2e}".split("e")
+    return [rate, f"RMSE {digits}e{int(exponent)}"]
+
+
+LEFT, RIGHT, GAP = 0.16, 0.01, 0.04  # inches
+LINE = 1.4 / 72  # inches of each point of the text
+SCALE_LABEL = ["RMS error", "of a pixel"]
+
+
+def _width(text: str) -> float:
+    """Inches for each point of its size."""
+    return TextPath((0, 0), text, size=100, prop=FontProperties(family=FONT)).get_extents().width / 100 / 72
+
+
+def _pieces(name: str) -> list[str]:
+    """Where a technique's name may be broken into lines."""
+    return re.findall("[^:,]+[:,]?", name)
+
+
+def _lines(name: str, room: float) -> list[str]:
+    """room: inches for each point of the text's size."""
+    lines = [""]
+    for piece in _pieces(name):
+        if lines[-1] and _width(lines[-1] + piece) > room:
+            lines.append("")
+        lines[-1] += piece
+    return lines
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """column: the width of a technique's pictures, inches; size: of all text, points."""
+    column: float
+    size: float
+
+    @property
+    def line(self) -> float:
+        return LINE * self.size
+
+    def title(self, column: Column) -> list[str]:
+        return _lines(column.name, self.column / self.size)
+
+    def title_height(self, scene: Scene) -> float:
+        return self.line * max(len(self.title(each)) for each in scene.columns) + GAP / 2
+
+    def rows(self, scene: Scene, crops: Sequence[Crop]) -> tuple[float, list[tuple[float, float]]]:
+        """The height of the picture, and the size of each crop, which stand beside each other below it."""
+        width, height = scene.size
+        sizes = []
+        if crops:
+            shapes = [w / h for _, _, w, h in crops]
+            tall = min((self.column - GAP * (len(crops) - 1)) / sum(shapes), self.column)
+            sizes = [(shape * tall, tall) for shape in shapes]
+        return self.column * height / width, sizes
+
+    def height(self, scene: Scene, crops: Sequence[Crop]) -> float:
+        picture_height, sizes = self.rows(scene, crops)
+        return self.title_height(scene) + 2 * (picture_height + GAP + (sizes[0][1] + GAP if sizes else 0)) + 2 * self.line
+
+
+def _layout(scenes: Sequence[Scene], width: float) -> _Layout:
+    most = max(len(scene.columns) for scene in scenes)
+    texts = [*SCALE_LABEL, *(text for scene in scenes for each in scene.columns
+                             for text in _pieces(each.name) + _numbers(each, scene.metric))]
+    widest = 1.03 * max(map(_width, texts))
+    column = (width - LEFT - RIGHT + GAP) / most - GAP
+    least = SMALLEST * widest
+    if column < least:
+        inches = math.ceil(10 * (LEFT + RIGHT - GAP + most * (least + GAP))) / 10
+        fit = math.floor((width - LEFT - RIGHT + GAP) / (least + GAP)) - 1
+        raise Error(f"figure: {most - 1} techniques and the reference need {inches} inches for their texts, found {width:g}" +
+                    (f", where {fit} techniques fit" if fit > 0 else ""))
+    return _Layout(column, min(LARGEST, column / widest))
 
 
 class _Page:
-    """Places axes on a figure, from the top down. Lengths are in inches."""
+    """Places axes on a figure, from the top down. Lengths are in inches. Edges of axes are those of dots, so that a
+    picture of as many pixels is shown as it is."""
 
     def __init__(self, width: float, height: float):
-        self.width, self.height, self.y = width, height, height
-        self.figure = Figure(figsize=(width, height))
+        self.width, self.height, self.y = width, _in_dots(height), _in_dots(height)
+        self.figure = Figure(figsize=(self.width, self.height))
         FigureCanvasAgg(self.figure)
 
     def axes(self, x: float, width: float, height: float):
-        axes = self.figure.add_axes((x / self.width, (self.y - height) / self.height, width / self.width,
-                                     height / self.height))
+        left, right, low, high = map(_in_dots, (x, x + width, self.y - height, self.y))
+        axes = self.figure.add_axes((left / self.width, low / self.height, (right - left) / self.width,
+                                     (high - low) / self.height))
         axes.set_xticks([])
         axes.set_yticks([])
+        return axes
+
+    def picture(self, x: float, width: float, height: float, values: NDArray, scale: Optional[Normalize]):
+        """values: linear RGB, or with a scale errors. Pixels that are smaller than dots are reduced to these."""
+        axes = self.axes(x, width, height)
+        dots = [round(DOTS_PER_INCH * each) for each in
+                axes.get_position().size * (self.width, self.height)]
+        rows, columns = values.shape[:2]
+        if scale is None:
+            shown, how = _on_screen(_reduced(numpy.clip(values.astype(float), 0, 1), *dots)), {}
+        else:
+            shown, how = numpy.sqrt(_reduced(values ** 2, *dots)), {"cmap": MAP, "norm": scale}
+        # Squares that stay squares in every viewer; or a picture that viewers may smooth.
+        how["interpolation"] = "none" if shown.shape == values.shape else "nearest"
+        axes.imshow(shown, aspect="auto", extent=(-0.5, columns - 0.5, rows - 0.5, -0.5), **how)
         return axes
 
     def text(self, x: float, text: str, **how) -> None:
         self.figure.text(x / self.width, self.y / self.height, text, **how)
 
 
-LEFT, GAP, TITLE, NUMBERS, BAR = 0.16, 0.04, 0.19, 0.30, 0.42  # inches
+def _in_dots(inches: float) -> float:
+    return round(inches * DOTS_PER_INCH) / DOTS_PER_INCH
 
 
-def _rows(scene: Scene, crops: Sequence[Crop], column: float) -> tuple[float, list[tuple[float, float]]]:
-    """The height of the picture, and the size of each crop, which stand beside each other below it."""
-    width, height = scene.size
-    sizes = []
-    if crops:
-        shapes = [w / h for _, _, w, h in crops]
-        tall = min((column - GAP * (len(crops) - 1)) / sum(shapes), column)
-        sizes = [(shape * tall, tall) for shape in shapes]
-    return column * height / width, sizes
-
-
-def _draw_scene(page: _Page, scene: Scene, crops: Sequence[Crop], column: float, scale: Normalize) -> None:
-    picture_height, sizes = _rows(scene, crops, column)
+def _draw_scene(page: _Page, scene: Scene, crops: Sequence[Crop], layout: _Layout, scale: Normalize) -> None:
+    column = layout.column
+    picture_height, sizes = layout.rows(scene, crops)
     crop_height = sizes[0][1] + GAP if sizes else 0
     top = page.y
+    pictures = top - layout.title_height(scene)
     for i, each in enumerate(scene.columns):
-        page.y, x = top, LEFT + i * (column + GAP)
-        page.y -= TITLE - GAP
-        page.text(x + column / 2, each.name, ha="center", va="bottom", fontsize=STYLE["axes.titlesize"])
-        page.y -= GAP
-        layers = [(_on_screen(each.picture), {"interpolation": "none"})]
-        if each.errors is not None:
-            layers.append((each.errors, {"interpolation": "none", "cmap": MAP, "norm": scale}))
-        for array, shown in layers:
-            axes = page.axes(x, column, picture_height)
-            axes.imshow(array, aspect="auto", **shown)
-            for number, (left, upper, w, h) in enumerate(crops):
-                axes.add_patch(Rectangle((left - 0.5, upper - 0.5), w, h, fill=False, linewidth=0.8,
-                                         edgecolor=CROP_COLORS[number % len(CROP_COLORS)]))
+        page.y, x = pictures + GAP / 2, LEFT + i * (column + GAP)
+        page.text(x + column / 2, "\n".join(layout.title(each)), ha="center", va="bottom")
+        page.y = pictures
+        for values, norm in [(each.picture, None)] + ([(each.errors, scale)] if each.errors is not None else []):
+            axes = page.picture(x, column, picture_height, values, norm)
+            for color, (left, upper, w, h) in zip(itertools.cycle(CROP_COLORS), crops):
+                axes.add_patch(Rectangle((left - 0.5, upper - 0.5), w, h, fill=False, linewidth=0.8, edgecolor=color,
+                                         path_effects=[withStroke(linewidth=1.4, foreground="black")]))
             page.y -= picture_height + GAP
             at = x
-            for number, (w, h) in enumerate(sizes):
-                axes = page.axes(at, w, h)
-                axes.imshow(_cut(array, crops[number]), aspect="auto", **shown)
+            for color, crop, (w, h) in zip(itertools.cycle(CROP_COLORS), crops, sizes):
+                axes = page.picture(at, w, h, _cut(values, crop), norm)
                 for spine in axes.spines.values():
-                    spine.set(color=CROP_COLORS[number % len(CROP_COLORS)], linewidth=1)
+                    spine.set(color=color, linewidth=1)
                 at += w + GAP
             page.y -= crop_height
-        if each.errors is not None:
-            page.text(x + column / 2, _numbers(each, scene.metric), ha="center", va="top", linespacing=1.3)
-    page.y = top - TITLE - 2 * (picture_height + GAP + crop_height)
-    _draw_scale(page, scale, LEFT + (len(scene.columns) - 1) * (column + GAP), column, picture_height + crop_height)
-    page.y = top - TITLE - (picture_height + crop_height)
+        page.text(x + column / 2, "\n".join(_numbers(each, scene.metric)), ha="center", va="top")
+    page.y = pictures - picture_height - crop_height
     page.text(0.01, scene.title, ha="left", va="center", rotation=90)
-    page.y = top - _height(scene, crops, column)
+    page.y -= GAP + crop_height
+    _draw_scale(page, scale, LEFT + (len(scene.columns) - 1) * (column + GAP), layout)
+    page.y = top - layout.height(scene, crops)
 
 
-def _draw_scale(page: _Page, scale: Normalize, x: float, width: float, height: float) -> None:
-    """In place of the reference's map of errors, which would be black. page.y is its lower end."""
-    page.y += min(height, BAR + 0.1)
-    axes = page.axes(x + 0.08 * width, 0.8 * width, 0.08)
+def _draw_scale(page: _Page, scale: Normalize, x: float, layout: _Layout) -> None:
+    """In place of the reference's map of errors, which would be black."""
+    axes = page.axes(x + 0.06 * layout.column, 0.88 * layout.column, 0.08)
     bar = page.figure.colorbar(ScalarMappable(scale, colormaps[MAP]), cax=axes, orientation="horizontal", extend="max",
-                               ticks=[scale.vmin, scale.vmax / 2, scale.vmax], format="%.2g")
+                               ticks=[scale.vmin, scale.vmax], format="%.2g")
     bar.outline.set_linewidth(0.4)
-    bar.set_label("error of a pixel (RMS of\nlinear R, G, B)", labelpad=1.5)
-
-
-def _height(scene: Scene, crops: Sequence[Crop], column: float) -> float:
-    picture_height, sizes = _rows(scene, crops, column)
-    return TITLE + 2 * (picture_height + GAP + (sizes[0][1] + GAP if sizes else 0)) + NUMBERS
+    for label, side in zip(axes.get_xticklabels(), ("left", "right")):  # within the column
+        label.set_horizontalalignment(side)
+    bar.set_label("\n".join(SCALE_LABEL), labelpad=1.5)
 
 
 def draw(scenes: Sequence[Scene], *, crops: Optional[Sequence[Crop]] = None, width: float = WIDTH) -> Figure:
@@ -242,10 +333,11 @@ def draw(scenes: Sequence[Scene], *, crops: Optional[Sequence[Crop]] = None, wid
     crops: (x, y, width, height) in pixels, of all scenes; None: where techniques differ most. width: of the figure, in
     inches.
     """
-    return _draw(scenes, _cuts(scenes, crops), _scale(scenes), width)
+    return _draw(scenes, crops_of(scenes, crops), _scale(scenes), width)
 
 
-def _cuts(scenes: Sequence[Scene], crops: Optional[Sequence[Crop]]) -> list[list[Crop]]:
+def crops_of(scenes: Sequence[Scene], crops: Optional[Sequence[Crop]] = None) -> list[list[Crop]]:
+    """Those that draw() takes for each scene."""
     if not scenes or any(len(scene.columns) < 2 for scene in scenes):
         raise Error("figure: expected at least one scene with a technique")
     cuts = [where_techniques_differ(scene) if crops is None else list(crops) for scene in scenes]
@@ -261,12 +353,11 @@ def _scale(scenes: Sequence[Scene]) -> Normalize:
 
 
 def _draw(scenes: Sequence[Scene], cuts: Sequence[Sequence[Crop]], scale: Normalize, width: float) -> Figure:
-    most = max(len(scene.columns) for scene in scenes)
-    column = (width - LEFT - GAP * (most - 1) - 0.01) / most
-    with rc_context(STYLE):
-        page = _Page(width, sum(_height(scene, cut, column) for scene, cut in zip(scenes, cuts)))
+    layout = _layout(scenes, width)
+    with rc_context({**STYLE, "font.size": layout.size}):
+        page = _Page(width, sum(layout.height(scene, cut) for scene, cut in zip(scenes, cuts)))
         for scene, cut in zip(scenes, cuts):
-            _draw_scene(page, scene, cut, column, scale)
+            _draw_scene(page, scene, cut, layout, scale)
     return page.figure
 
 
@@ -312,7 +403,7 @@ def film(frames: Iterable[Sequence[Scene]], file: Union[str, os.PathLike], *, cr
     frame."""
     frames = iter(frames)
     first = next(frames)
-    cuts, scale = _cuts(first, crops), _scale(first)
+    cuts, scale = crops_of(first, crops), _scale(first)
     with tempfile.TemporaryDirectory() as folder:
         written = pathlib.Path(folder) / "film.mp4"
         command = ["ffmpeg", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(FRAMES_PER_SECOND), "-i", "-",
@@ -345,20 +436,26 @@ def _tex(text: str) -> str:
     return "".join(special.get(each, each) for each in text)
 
 
+def _three_digits(value: float) -> str:
+    exponent = int(f"{value:.2e}".split("e")[1])
+    return f"{value:.{max(0, 2 - exponent)}f}"
+
+
 def _tex_rate(rate: Optional[Rate]) -> str:
     if rate is None or rate.does_not_converge:
         return "--"
-    return str(rate).replace("≥ ", r"$\geq$\,").replace("< ", "$<$\\,")
+    text = rate.text.replace("≥ ", r"$\geq$\,").replace("< ", "$<$\\,")
+    return text + (f" ({rate.within.replace('..', '--')})" if rate.within else "")
 
 
 def booktabs(scenes: Sequence[Scene]) -> str:
-    """A table for LaTeX's booktabs: for each scene and technique, RMSE and EMR."""
+    """A table for LaTeX's booktabs: for each scene and technique, RMSE and EMR with its range."""
     names = dict.fromkeys(_rate_name(scene.metric) for scene in scenes)
     lines = [r"\begin{tabular}{llrr}", r"\toprule",
              rf"Scene & Technique & RMSE $\times 10^3$ & {_tex(', '.join(names))} \\"]
     for scene in scenes:
         lines.append(r"\midrule")
         for i, column in enumerate(each for each in scene.columns if each.errors is not None):
-            lines.append(f"{_tex(scene.title) if i == 0 else ''} & {_tex(column.name)} & {1000 * column.rmse:.2f} & "
+            lines.append(f"{_tex(scene.title) if i == 0 else ''} & {_tex(column.name)} & {_three_digits(1000 * column.rmse)} & "
                          rf"{_tex_rate(column.rate)} \\")
     return "\n".join(lines + [r"\bottomrule", r"\end{tabular}", ""])

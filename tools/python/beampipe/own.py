@@ -53,12 +53,21 @@ class Merge:
             fragments[key] = column
         merged = numpy.zeros((len(first) - 1, 4), numpy.float32)
         for pixel in numpy.flatnonzero(numpy.diff(first)):
-            found = numpy.asarray(self.rule(fragments[first[pixel]:first[pixel + 1]]), numpy.float32)
+            found = numpy.asarray(self._merged(fragments[first[pixel]:first[pixel + 1]]), numpy.float32)
             if found.shape != (4,) or not numpy.isfinite(found).all() or not -1e-3 <= found[3] <= 1.001:
                 raise Error(f"{self.name}: expected 4 finite numbers from the rule, R, G, B and A, and A from 0 to 1, "
                             f"found {found}")
             merged[pixel] = found
         return merged
+
+    def _merged(self, fragments: NDArray) -> ArrayLike:
+        try:
+            return self.rule(fragments)
+        except ValueError as error:
+            if "no field" not in str(error):
+                raise
+            expected = f"{self.name}: {error}: expected {', '.join(self._record.names)}"
+            raise Error(expected).with_traceback(error.__traceback__) from None  # where the rule asks for it
 
     def render(self, trace: Trace, frame: int, **how: Any) -> Rendering:
         return rendering._render_native(self.technique, trace, frame, **how)
@@ -71,12 +80,14 @@ def _code_of(technique: AnyTechnique) -> tuple[str, str]:
         file: Optional[str] = inspect.getsourcefile(function if callable(function) else type(function))
     except TypeError:
         file = None
+    script = getattr(sys.modules["__main__"], "__file__", None)
     digest = hashlib.sha256()
-    for each in sorted({file, getattr(sys.modules["__main__"], "__file__", None)} - {None}):
+    for each in sorted({file, script} - {None}):
         if os.path.isfile(each):
             with open(each, "rb") as code:
                 digest.update(code.read())
-    return os.path.basename(file or "Python"), digest.hexdigest()[:16]
+    named = script if isinstance(technique, Pattern) else file  # a pattern's class is ours
+    return os.path.basename(named or "Python"), digest.hexdigest()[:16]
 
 
 def _own_kind(technique: AnyTechnique) -> _native.OwnKind:

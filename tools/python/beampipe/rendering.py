@@ -24,9 +24,10 @@ class Rendering:
     picture: height x width x 3, float32, linear RGB, row 0 on top. alpha: height x width, the part of each pixel that
     geometry covers, 0..1. counters: by name, height x width, what was counted in each pixel. stages: counters by stage
     and name, as in report.json (`beampipe counters` explains them); operations are "ops.add" and so on. buffers: the
-    most bytes that each held at once. bytes_in_memory, bytes_on_chip: of the framebuffer, per pixel; on chip only while
-    a bin is drawn. times: modelled milliseconds by implementation of the hardware: "in_turn", "on_cores", "at_once",
-    and the "busiest" unit. Functions of the user's count nothing.
+    most bytes that each held at once. on_chip_bytes_per_pixel, off_chip_bytes_per_pixel: as in report.json, all that a
+    bin has on chip, and the framebuffer in memory with what triangles take beside it. times: modelled milliseconds by
+    implementation of the hardware: "in_turn", "on_cores", "at_once", and the "busiest" unit. Functions of the user's
+    count nothing.
     """
     technique: str
     frame: int
@@ -35,8 +36,8 @@ class Rendering:
     counters: dict[str, NDArray[numpy.float32]] = field(default_factory=dict)
     stages: dict[str, dict[str, int]] = field(default_factory=dict)
     buffers: dict[str, int] = field(default_factory=dict)
-    bytes_in_memory: int = 0
-    bytes_on_chip: int = 0
+    on_chip_bytes_per_pixel: float = 0
+    off_chip_bytes_per_pixel: float = 0
     times: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     @property
@@ -83,7 +84,8 @@ class Pattern:
         for (x, y), technique in self._techniques.items():
             part = _render_native(technique, trace, frame, **how)
             whole = whole or Rendering(self.name, frame, part.picture.copy(), part.alpha.copy(),
-                                       bytes_in_memory=part.bytes_in_memory, bytes_on_chip=part.bytes_on_chip)
+                                       on_chip_bytes_per_pixel=part.on_chip_bytes_per_pixel,
+                                       off_chip_bytes_per_pixel=part.off_chip_bytes_per_pixel)
             whole.picture[y::height, x::width] = part.picture[y::height, x::width]
             whole.alpha[y::height, x::width] = part.alpha[y::height, x::width]
         return whole

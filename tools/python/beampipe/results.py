@@ -5,10 +5,11 @@ import csv
 import dataclasses
 import json
 import pathlib
+import re
 import sqlite3
 import struct
 import zlib
-from typing import Optional
+from typing import Iterable, Iterator, Optional
 
 import numpy
 
@@ -32,11 +33,34 @@ class Rate:
     low: Optional[float] = None
     high: Optional[float] = None
 
-    def __str__(self) -> str:
+    @property
+    def text(self) -> str:
+        """Without its range."""
         if self.does_not_converge:
             return "does not converge"
-        samples = f"{self.samples:.0f}" if self.samples >= 100 else f"{self.samples:.3g}"
-        return ("≥ " if self.is_lower_bound else "< " if self.is_upper_bound else "") + samples
+        return ("≥ " if self.is_lower_bound else "< " if self.is_upper_bound else "") + _samples_text(self.samples)
+
+    @property
+    def within(self) -> str:
+        """Its range, "659..938", as far as it is known."""
+        return "" if self.low is None and self.high is None else "..".join(
+            "" if end is None else _samples_text(end) for end in (self.low, self.high))
+
+    def __str__(self) -> str:
+        return f"{self.text} ({self.within})" if self.within else self.text
+
+
+def _samples_text(samples: float) -> str:
+    return f"{samples:.0f}" if samples >= 100 else f"{samples:.3g}"
+
+
+def each_spec(specs: Iterable) -> Iterator:
+    """msaa:8,32 is short for msaa:8 and msaa:32."""
+    for spec in specs:
+        if isinstance(spec, str) and re.fullmatch("msaa:[0-9,]+", spec):
+            yield from (f"msaa:{samples}" for samples in spec[len("msaa:"):].split(","))
+        else:
+            yield spec
 
 
 class Exr(dict):
@@ -137,7 +161,7 @@ def _read_exr(data):
 
 
 class Report:
-    """The results in a folder of `beampipe run` or `beampipe compare`. `json` is all of report.json."""
+    """The results in a folder of `beampipe run` or `beampipe compare`, by technique. `json` is all of report.json."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -153,6 +177,12 @@ class Report:
     @property
     def techniques(self):
         return list(self._results)
+
+    def __iter__(self):
+        return iter(self._results.values())
+
+    def __len__(self):
+        return len(self._results)
 
     def __getitem__(self, technique):
         if technique not in self._results:

@@ -69,9 +69,11 @@ BlockSquares block_squares(const std::vector<FloatArray>& pictures, const std::v
   return sums;
 }
 
-// `blocks`: of the picture and of each rung, if errors are RMSEs.
+// `blocks`: of the picture and of each rung, if errors are RMSEs. `reference_error`: that of the reference, if
+// measured.
 py::dict equivalent_rate(double error, const std::vector<std::pair<std::uint32_t, double>>& ladder,
-                         const std::optional<std::pair<BlockSquares, std::vector<BlockSquares>>>& blocks) {
+                         const std::optional<std::pair<BlockSquares, std::vector<BlockSquares>>>& blocks,
+                         const std::optional<double>& reference_error) {
   std::vector<LadderRung> rungs;
   std::vector<std::uint32_t> samples_of_rungs;
   for (const auto& [samples, rung_error] : ladder) {
@@ -80,6 +82,7 @@ py::dict equivalent_rate(double error, const std::vector<std::pair<std::uint32_t
   }
   std::vector<EmrRange> ranges;
   if (blocks) ranges.push_back(resampled_range(blocks->first, samples_of_rungs, blocks->second));
+  if (reference_error) ranges.push_back(range_by_reference(error, rungs, *reference_error));
   const EquivalentMsaa rate = limited_equivalent_msaa(error, rungs, std::move(ranges));
   py::dict all;
   all["samples"] = rate.samples;

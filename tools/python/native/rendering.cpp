@@ -9,6 +9,7 @@
 #include "tools/evaluate/modelled_time.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/render.h"
+#include "tools/evaluate/results.h"
 #include "tools/inspect/inspection.h"
 #include "tools/inspect/inspection_json.h"
 #include "tools/inspect/inspection_text.h"
@@ -38,9 +39,7 @@ py::dict counters_of(const StageCounters& stage) {
 }
 
 // By implementation.
-py::dict times_of(const FrameResult& result, const Hardware& hardware) {
-  FrameReport counted;
-  add_counters(result, counted);
+py::dict times_of(const FrameReport& counted, const Hardware& hardware) {
   py::dict all;
   for (const Implementation& implementation : hardware.implementations) {
     const ModelledTime time = modelled_time(hardware, implementation, counted.work());
@@ -82,11 +81,14 @@ py::dict render(const TraceHandle& trace, const Technique& technique, std::size_
     input.cancelled = &cancelled;
     return technique.render(trace.trace(), frame, input);
   });
-  const Framebuffer& framebuffer = technique.framebuffer;
+  TechniqueReport report = new_technique_report(technique, memory);
+  FrameReport counted;
+  add_counters(result, counted);
+  report.frames.push_back(counted);
   py::dict all = to_python(result);
-  all["times"] = memory_model && !is_reference(technique.spec) ? times_of(result, hardware) : py::dict();
-  all["bytes_in_memory"] = technique.framebuffer_bytes_per_pixel(memory);
-  all["bytes_on_chip"] = framebuffer.is_on_chip(memory) ? framebuffer.on_chip_bytes_per_pixel() : 0;
+  all["times"] = memory_model && !is_reference(technique.spec) ? times_of(counted, hardware) : py::dict();
+  all["on_chip_bytes_per_pixel"] = report.on_chip_bytes_per_pixel();
+  all["off_chip_bytes_per_pixel"] = report.peak_bytes_per_pixel();
   return all;
 }
 
@@ -129,6 +131,7 @@ void add_rendering(py::module_& module) {
   module.def("render", &render);
   module.def("inspect", &inspect_pixel);
   module.attr("reference_spec") = kReferenceSpec;
+  module.attr("second_reference_spec") = kSecondReferenceSpec;
 }
 
 }  // namespace beampipe

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <stdexcept>
 
 #include "tools/python/native/bindings.h"
 #include "tools/python/native/interruptible.h"
 #include "tools/python/native/trace_handle.h"
+#include "traces/files/model_import.h"
 #include "traces/files/trace_io.h"
 #include "traces/scenes.h"
 
@@ -123,6 +125,9 @@ TraceHandle new_trace(Mesh mesh, Frame frame) {
 
 TraceHandle make(const std::string& scene, const SceneOptions& options, std::uint32_t frames, double orbit,
                  const std::array<double, 2>& pan) {
+  if (is_model_file(scene))
+    throw std::runtime_error(scene + " is a model: expected a scene; `beampipe make " + scene + " -o " +
+                             std::filesystem::path(scene).stem().string() + ".json` makes its trace, for open_trace()");
   return interruptible([&](const std::atomic<bool>&) {
     Trace trace = make_scene(scene, options);
     if (frames != 1 && pan == std::array<double, 2>{}) orbit_camera(trace, frames, orbit);
