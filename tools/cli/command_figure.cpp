@@ -7,6 +7,22 @@
 
 namespace beampipe {
 
+namespace {
+
+// The package's folder takes the place of the current one, whose files could have the names of Python's modules.
+constexpr const char* kStart = R"(
+import sys
+try:
+    sys.path = [sys.argv.pop(1), *filter(None, sys.path)]
+    from beampipe.figure_command import main
+    main()
+except KeyboardInterrupt:
+    print("beampipe: stopped", file=sys.stderr)
+    sys.exit(130)
+)";
+
+}  // namespace
+
 void add_figure_command(CommandLine& line) {
   const auto words = std::make_shared<std::vector<std::string>>();
   Command command =
@@ -14,11 +30,7 @@ void add_figure_command(CommandLine& line) {
   command.set_work([words] {
     const std::filesystem::path package =
         scripts_folder(BEAMPIPE_PACKAGE_FOLDER, BEAMPIPE_PACKAGE_SOURCE, "beampipe/figure_command.py");
-    // The package's folder takes the place of the current one, whose files could have the names of Python's modules.
-    std::vector<std::string> arguments = {"-c",
-                                          "import sys; sys.path = [sys.argv.pop(1), *filter(None, sys.path)]; from "
-                                          "beampipe.figure_command import main; main()",
-                                          std::filesystem::absolute(package).string()};
+    std::vector<std::string> arguments = {"-c", kStart, std::filesystem::absolute(package).string()};
     arguments.insert(arguments.end(), words->begin(), words->end());
     become_python(arguments);
   });

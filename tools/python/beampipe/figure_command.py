@@ -96,9 +96,6 @@ def work(arguments):
 def main():
     try:
         work(parse(sys.argv[1:]))
-    except KeyboardInterrupt:
-        print("beampipe: stopped", file=sys.stderr)
-        sys.exit(130)
     except WrongUsage as error:
         sys.exit(_say(error, 2))
     except Error as error:
