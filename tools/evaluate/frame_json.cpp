@@ -80,6 +80,8 @@ Form<StageCounters> make_stage_form() {
       .added("modelled_ms", form::by_name(form::amount()).schema,
              "Milliseconds that the modelled hardware takes for this stage, by implementation.")
       .added("busiest_unit", form::by_name(form::text()).schema, "The unit that takes so long, by implementation.")
+      .added("busiest_rate", form::by_name(form::text()).schema,
+             "The rate of the description at which most of that time goes, by implementation.")
       .added("energy_mj", energy_schema(),
              "Millijoules that the modelled hardware takes for this stage, by where they go; by implementation where "
              "they differ.");
@@ -189,7 +191,9 @@ Form<PixelCounterStats> statistics_form() {
 Form<ModelledTime> modelled_form() {
   ObjectForm<ModelledTime> form;
   for (const TimeKind& kind : kTimes) form.written(kind.key, kind.ms, form::amount(), kind.meaning);
-  return form.written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit of all at once.");
+  return form.written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit of all at once.")
+      .written("busiest_rate", &ModelledTime::busiest_rate, form::text(),
+               "The rate of the description at which most of its time goes.");
 }
 
 Form<BinSpread> spread_form() {
@@ -310,6 +314,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
       Json& stage = *find_stage(stages, name_of(of_stage.stage));
       stage["modelled_ms"][implementation.name] = of_stage.ms;
       stage["busiest_unit"][implementation.name] = of_stage.busiest;
+      stage["busiest_rate"][implementation.name] = of_stage.busiest_rate;
     }
     if (!has_energy(hardware)) continue;
     const std::vector<StageEnergy> energy = modelled_energy(hardware, implementation, frame.stages);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/results.h"
 #include "traces/files/json.h"
@@ -139,7 +140,8 @@ TechniqueSummary read_summary(const Json& result) {
       mean.at_once += time.at("at_once").get<double>() / count;
       mean.on_cores += time.value("on_cores", 0.0) / count;
       mean.in_turn += time.at("in_turn").get<double>() / count;
-      add_unit(mean.busiest, time.value("busiest", std::string()));
+      add_unit(mean.busiest,
+               limit_text(time.value("busiest", std::string()), time.value("busiest_rate", std::string())));
     }
   }
   if (const Json* error = result.find("error")) summary.rmse = error->at("rmse").get<double>();
@@ -185,6 +187,10 @@ std::vector<Json> stage_records(const ReportFile& report) {
       divide_numbers(stage, frames.size());
       add_ratios(stage);
       stage["technique"] = result.at("technique");
+      const Json units = stage.value("busiest_unit", Json::object()), rates = stage.value("busiest_rate", Json::object());
+      for (const auto& [implementation, unit] : units.members())
+        stage["busiest"][implementation] =
+            limit_text(unit.get<std::string>(), rates.value(implementation, std::string()));
       records.push_back(std::move(stage));
     }
   }

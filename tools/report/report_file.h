@@ -32,7 +32,7 @@ auto read_from_report(const std::filesystem::path& folder, const Read& read) {
 // and one stage after the other.
 struct ModelledMs {
   double at_once = 0, on_cores = 0, in_turn = 0;
-  std::string busiest;  // the unit that limits `at_once`; several, with commas, if they differ from frame to frame
+  std::string busiest;  // what limits `at_once`, as limit_text() writes it; several, with commas, if they differ from frame to frame
 };
 
 // Cost and error of one technique, over all frames of a report.

@@ -190,8 +190,10 @@ std::vector<Source> stage_columns(const ReportFile& report) {
          "/modelled_ms/" + implementation});
   for (const std::string& implementation : implementations_of(report))
     columns.push_back({{"busiest_unit_" + implementation, "busiest, " + implementation, "",
-                        "The unit that takes so long, in the last frame.", kTime},
-                       "/busiest_unit/" + implementation});
+                        "The unit that takes so long, and the rate that limits it where that is not the unit's own; in "
+                        "the last frame.",
+                        kTime},
+                       "/busiest/" + implementation});
   add_energy(columns, report, "mJ");
   return columns;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/mean_time.h"
 #include "tools/evaluate/sensitivity.h"
 #include "tools/files/format.h"
@@ -164,7 +165,7 @@ std::string times_text(const Report& report, const TimesOptions& options) {
   for (const Row& row : all) {
     rows.push_back({row.result.technique, row.implementation.name, ms_text(row.time.in_turn_ms),
                     interval_text(row.intervals.at(kTimes[0].key), ms_text), ms_text(row.time.on_cores_ms),
-                    ms_text(row.time.at_once_ms), row.time.busiest, ratio_text(row.spread.busiest_core),
+                    ms_text(row.time.at_once_ms), limit_text(row.time.busiest, row.time.busiest_rate), ratio_text(row.spread.busiest_core),
                     room_text(report, row.result)});
     if (!options.over.empty()) rows.back().push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
@@ -176,10 +177,11 @@ std::string times_text(const Report& report, const TimesOptions& options) {
 Json times_json(const Report& report, const TimesOptions& options) {
   Json json = Json::array();
   for (const Row& row : Rows(report, options).all()) {
-    Json stages, units;
+    Json stages, units, rates;
     for (const StageTime& each : row.time.stages) {
       stages[name_of(each.stage)] = each.ms;
       units[name_of(each.stage)] = each.busiest;
+      rates[name_of(each.stage)] = each.busiest_rate;
     }
     Json of_row = {{"technique", row.result.technique},
                    {"hardware", report.hardware.label},
@@ -189,10 +191,12 @@ Json times_json(const Report& report, const TimesOptions& options) {
       of_row[std::string(kind.key) + "_interval"] = row.intervals.at(kind.key).json();
     }
     of_row["busiest"] = row.time.busiest;
+    of_row["busiest_rate"] = row.time.busiest_rate;
     of_row["bin_spread"] = {
         {"busiest_core", row.spread.busiest_core}, {"p99", row.spread.p99}, {"most", row.spread.most}};
     of_row["stages"] = stages;
     of_row["busiest_units"] = units;
+    of_row["busiest_rates"] = rates;
     const FrameReport& first = row.result.frames.front();
     of_row["bin_bytes"] = first.open_pixel_bytes();
     if (first.open_pixel_bytes() > 0) of_row["bins_held"] = first.bins_held(report.memory);

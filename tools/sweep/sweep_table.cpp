@@ -123,6 +123,7 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
     columns.push_back({name + "_ms_high", "ms", "the most of them"});
   }
   columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
+  columns.push_back({"bottleneck_rate", "", "the rate at which most of its time goes", true});
   columns.push_back({"energy_mj_low", "mJ", "modelled energy, the least; the mean over the frames"});
   columns.push_back({"energy_mj_high", "mJ", "the same, the most"});
   return columns;
@@ -148,15 +149,17 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   values.emplace_back(implementation.name);
   Energy energy;
   double longest = -1;
-  std::string busiest;
+  std::string busiest, busiest_rate;
   for (const FrameReport& frame : report.frames) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
-    if (time.at_once_ms > longest) longest = time.at_once_ms, busiest = time.busiest;
+    if (time.at_once_ms > longest)
+      longest = time.at_once_ms, busiest = time.busiest, busiest_rate = time.busiest_rate;
     if (has_energy(hardware)) energy += sum_of(modelled_energy(hardware, implementation, frame.stages));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
   add_times(hardware, row.implementation, report, values);
   values.emplace_back(busiest);
+  values.emplace_back(busiest_rate);
   for (const double mj : {energy.total().low, energy.total().high})
     values.push_back(has_energy(hardware) ? Json(mj / frames) : Json());
 }
