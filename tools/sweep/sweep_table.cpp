@@ -64,11 +64,19 @@ std::vector<Column> cell_columns() {
   }
   columns.push_back({{"pixels_on_chip", "", "1 if the pixels of a bin are on chip, else 0"},
                      [](const Cell& c) { return Json(c.report.pixels_on_chip ? 1 : 0); }});
+  columns.push_back({{"pixels_per_bin", "px", "of the largest bin, in the first frame"}, [](const Cell& c) {
+                       return c.report.frames.empty() ? Json() : Json(c.report.frames.front().bin_pixels);
+                     }});
+  columns.push_back(
+      {{"bins_held", "bins", "that a core has room for; only where pixels are on chip"}, [](const Cell& c) {
+         const bool is_known = c.report.pixels_on_chip && !c.report.frames.empty();
+         return is_known ? Json(c.report.frames.front().bins_held(c.plan.memory[c.cell.memory])) : Json();
+       }});
   columns.push_back({{"on_chip_bytes_per_pixel", "bytes", "all that a bin has on chip, at its peak, over its pixels"},
                      [](const Cell& c) { return Json(c.report.on_chip_bytes_per_pixel()); }});
-  columns.push_back(
-      {{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and A-buffer, translucent layer and spilled records at their peaks"},
-       [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
+  columns.push_back({{"off_chip_bytes_per_pixel", "bytes",
+                      "the framebuffer, and A-buffer, translucent layer and spilled records at their peaks"},
+                     [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
   columns.push_back({{"operations", "", "operations of all stages"},
                      [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.ops.total(); }); }});
   columns.push_back({{"logical_bytes", "bytes", "read and written by all stages, queues included"},
@@ -152,8 +160,7 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   std::string busiest, busiest_rate;
   for (const FrameReport& frame : report.frames) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
-    if (time.at_once_ms > longest)
-      longest = time.at_once_ms, busiest = time.busiest, busiest_rate = time.busiest_rate;
+    if (time.at_once_ms > longest) longest = time.at_once_ms, busiest = time.busiest, busiest_rate = time.busiest_rate;
     if (has_energy(hardware)) energy += sum_of(modelled_energy(hardware, implementation, frame.stages));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
