@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/hardware_units.h"

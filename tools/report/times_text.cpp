@@ -71,8 +71,7 @@ BinSpread mean_spread(const Hardware& hardware, const TechniqueReport& result) {
 
 class Rows {
  public:
-  Rows(const Report& report, const TimesOptions& options)
-      : report_(report), options_(options), draws_(drawn_hardware(report.hardware)) {
+  Rows(const Report& report, const TimesOptions& options) : report_(report), draws_(drawn_hardware(report.hardware)) {
     std::vector<std::string> modelled;
     for (const TechniqueReport& result : report.results) {
       if (!has_times(result)) continue;
@@ -121,7 +120,6 @@ class Rows {
   }
 
   const Report& report_;
-  const TimesOptions& options_;
   std::vector<Hardware> draws_;
   std::vector<RateEnds> ends_;
   const TechniqueReport* over_ = nullptr;

@@ -54,8 +54,8 @@ TEST_F(ModelText, StagesNameTheirUnitsOnRequest) {
   ASSERT_NE(title, lines.end());
   const std::vector<std::string> rows(title + 2, lines.end());
   EXPECT_GT(rows.size(), 6u);
-  const Json times = parse_json_text(succeed({"model", path("out"), "--json"}), "model").elements()[0].at("times");
-  for (const Json& row : times.elements())
+  const Json models = parse_json_text(succeed({"model", path("out"), "--json"}), "model");
+  for (const Json& row : models.at(0).at("times").elements())
     for (const auto& [stage, ms] : row.at("stages").members()) {
       const bool is_shown = ms.get<double>() >= 0.01 * row.at("in_turn").get<double>();
       const auto is_it = [&, name = stage](const std::string& line) {

@@ -222,7 +222,7 @@ class PageTest(unittest.TestCase):
             const box = canvas.getBoundingClientRect(), size = box.width / layer.width;
             return [box.left + (arguments[0] + 0.5) * size, box.top + (arguments[1] + 0.5) * size]""", x, y)
         self.browser.send("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
-            {"type": "pointerMove", "x": round(px), "y": round(py), "duration": 0}, {"type": "pointerDown", "button": 0},
+            {"type": "pointerMove", "x": px, "y": py, "duration": 0}, {"type": "pointerDown", "button": 0},
             {"type": "pointerUp", "button": 0}]}]})
 
     def pixel(self, x, y):
