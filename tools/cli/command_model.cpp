@@ -43,7 +43,8 @@ void model(const ModelArguments& arguments) {
       json.push_back({{"folder", folder}, {"times", times_json(report, arguments.times)}});
       if (arguments.energy) json.elements().back()["energy"] = energy_json(report, arguments.times.over);
     } else {
-      std::cout << folder << ":" << times_text(report, arguments.times)
+      const std::string times = times_text(report, arguments.times);  // which may fail
+      std::cout << folder << ":" << times
                 << (arguments.energy ? energy_text(report, arguments.times.over) : std::string());
     }
   }

@@ -128,8 +128,7 @@ const std::vector<HardwareUnit>& hardware_units() {
        .is_of_cores = true},
       {.name = "triangles",
        .kind = Kind::beside,
-       .clocks = [](const Rates& rates,
-                    const StageWork& s) { return rates.over(s.items_in, "triangles_per_clk"); }},
+       .clocks = [](const Rates& rates, const StageWork& s) { return rates.over(s.items_in, "triangles_per_clk"); }},
   };
   return all;
 }

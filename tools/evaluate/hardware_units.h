@@ -14,8 +14,8 @@ namespace beampipe {
 inline constexpr const char *kL2 = "l2", *kDram = "dram", *kExport = "export", *kLatency = "latency";
 inline constexpr double kProbeBytes = 16;  // a bilinear probe: four texels of 4 bytes
 
-// What a unit needs for the work of a stage, and the rate by which that is so long. A unit does several kinds of work at
-// a time, each at a rate of its own; a sum has the rate of its greater part.
+// What a unit needs for the work of a stage, and the rate by which that is so long. A unit does several kinds of work
+// at a time, each at a rate of its own; a sum has the rate of its greater part.
 struct Clocks {
   double count = 0;
   const char* rate = "";

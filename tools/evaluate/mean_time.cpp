@@ -19,7 +19,8 @@ std::uint64_t seed_of(std::string_view name) {
 void add_stage(const StageTime& stage, double frames, std::vector<StageTime>& mean) {
   const auto is_it = [&](const StageTime& each) { return each.stage == stage.stage; };
   const auto found = std::find_if(mean.begin(), mean.end(), is_it);
-  StageTime& of_mean = found == mean.end() ? mean.emplace_back(StageTime{stage.stage, 0, stage.busiest, stage.busiest_rate}) : *found;
+  StageTime& of_mean =
+      found == mean.end() ? mean.emplace_back(StageTime{stage.stage, 0, stage.busiest, stage.busiest_rate}) : *found;
   of_mean.ms += stage.ms / frames;
 }
 

@@ -81,8 +81,8 @@ TEST(Hardware, ErrorsNameTheKey) {
       {"\"conservative_raster\":[\"conservative_raster\"]", "\"conservative_raster\":[\"shader\"]",
        units + "conservative_raster/0: expected a unit of fixed functions, in which alone conservative_raster is "
                "modelled (`beampipe counters conservative_raster`), found \"shader\""},
-      {"\"bin_sort\":[\"shader\"]", "\"bin_sort\":[\"sorter\"]",
-       units + "bin_sort/0: expected a unit of shaders, in which alone bin_sort is modelled"},
+      {"\"motion\":[\"shader\"]", "\"motion\":[\"sorter\"]",
+       units + "motion/0: expected a unit of shaders, in which alone motion is modelled"},
       {"\"compose\":[\"shader\"],", "\"compose\":[\"l2\"],", units + "compose/0: expected one of"},
       {"\"compose\":[\"shader\"],", "\"compose\":[\"latency\"],", units + "compose/0: expected one of"},
       {"\"dram_clocks\":375,", "\"dram_clocks\":100,", "/rates/dram_clocks: expected at least the l2_clocks of 193"},

@@ -60,8 +60,8 @@ TEST(ModelledTime, ColoursGoToRops) {
       << "ROPs resolve what cores have kept on chip";
 }
 
-// 5120 bytes of pixels at 10240 per clock on chip or 2048 in memory, or 4800 samples at 768. The sums of a unit have the
-// rate at which most of them go.
+// 5120 bytes of pixels at 10240 per clock on chip or 2048 in memory, or 4800 samples at 768. The sums of a unit have
+// the rate at which most of them go.
 TEST(ModelledTime, TheRateThatLimitsAUnitIsNamed) {
   const Hardware titan = titan_without_latency();
   const auto rate = [&](std::uint64_t samples, std::uint64_t bytes, double bin_bytes) {
