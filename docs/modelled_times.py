@@ -52,9 +52,15 @@ def first_folders(folders):
     return first
 
 
+def limit_of(time):
+    """The busiest unit, and the rate that limits it where that is not the unit's own."""
+    rate = time["busiest_rate"].removeprefix("core_").removesuffix("_per_clk")
+    return time["busiest"] if rate.startswith(time["busiest"]) else f"{time['busiest']}: {rate}"
+
+
 def cells_of(times, names):
     """Milliseconds with their interval, and the busiest unit."""
-    return [f"{time['in_turn']:.3f} ({time['in_turn_interval'][0]:.3g}–{time['in_turn_interval'][1]:.3g}, {time['busiest']})"
+    return [f"{time['in_turn']:.3f} ({time['in_turn_interval'][0]:.3g}–{time['in_turn_interval'][1]:.3g}, {limit_of(time)})"
             for time in (times[name] for name in names)]
 
 

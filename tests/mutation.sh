@@ -231,7 +231,7 @@ mutants=(  # file | text as it is | broken
   'pipeline/memory/parameters.h|std::min(room, static_cast<double>(most_bins(pixels)))|room'
   'tools/evaluate/modelled_time.cpp|free_at.top() + work|work'
   'tools/evaluate/modelled_time.cpp|(info_of_unit(unit).is_of_cores ? of_cores : shared)[unit]|of_cores[unit]'
-  'tools/evaluate/modelled_time.cpp|busiest_of(before).second + of_bins.ms|of_bins.ms'
+  'tools/evaluate/modelled_time.cpp|busiest_of(before).ms + of_bins.ms|of_bins.ms'
   'tools/evaluate/sensitivity.cpp|(values.size() + 19) / 20 - 1|values.size() / 20'
   'tools/evaluate/sensitivity.cpp|std::pow(range.high / range.low, uniform(random))|(1 + uniform(random) * (range.high / range.low - 1))'
   'tools/evaluate/remodel.cpp|report.hardware.memory = report.memory;|'

@@ -48,8 +48,10 @@ class BinStage {
   // Charges reading `bytes` and writing a copy, and so on in turn, `times` times, counted in sectors as one stream.
   void copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const;
 
-  // Charges moving `bytes` in a row between a stage and L2, which holds them.
-  void moves_in_l2(std::uint64_t bytes) const { stream_in_l2(memory_, bytes, counters); }
+  // Charges moving `bytes` of an array in a row between a stage and L2, which holds them.
+  void moves_in_l2(std::string_view array, std::uint64_t bytes) const {
+    stream_in_l2(memory_, ArrayName{array}.number(memory_), bytes, counters);
+  }
 
   StageCounters& counters;
 

@@ -296,6 +296,7 @@ class FrameRecorder {
       stage.dram_bytes += bytes[stage.stage.number()];
       stage.texture_dram_bytes += bytes[stage.stage.number()];
       tally_.add(tally_.array("texels"), DramAccess::read, stage.stage, bytes[stage.stage.number()]);
+      tally_.add_l2(tally_.array("texels"), stage.stage, stage.texture_l2_bytes);
     }
   }
 
@@ -325,11 +326,11 @@ class FrameRecorder {
       return static_cast<std::uint64_t>(static_cast<double>(sectors) * part) * memory.sector_bytes;
     };
     DramLog log;
-    StageCounters moved{kept.stage};
     const MemorySystem system{memory, trace_ ? &log : nullptr, &tally_};
-    stream(system, DramAccess::write, {kSpilledRecords}, missed(kept.writes), moved);
-    stream(system, DramAccess::read, {kSpilledRecords}, missed(kept.reads), moved);
-    find_counters(result_.stages, kept.stage)->dram_bytes += moved.dram_bytes;
+    const ArrayPart records{{kSpilledRecords}, tally_.array(kSpilledRecords)};
+    StageCounters& counters = *find_counters(result_.stages, kept.stage);
+    stream_in_dram(system, DramAccess::write, records, missed(kept.writes), counters);
+    stream_in_dram(system, DramAccess::read, records, missed(kept.reads), counters);
     if (trace_) trace_->add(log, first_pass_, bin);
   }
 

@@ -80,7 +80,7 @@ void BlockCache::serve_request() {
     if (request.written_bytes[sector] >= whole) overwritten |= 1u << sector;
     request.written_bytes[sector] = 0;
   }
-  count_request(bytes_of(request.read) + bytes_of(request.write), counters);
+  count_request(request.block, bytes_of(request.read) + bytes_of(request.write), counters);
   serve(request.block, request.read, request.write, static_cast<Sectors>(overwritten), counters);
   request.block = ~std::size_t{0};
   request.read = request.write = 0;
@@ -88,7 +88,7 @@ void BlockCache::serve_request() {
 
 void BlockCache::load(std::size_t block, Sectors missing, StageCounters& counters) {
   if (!next_) return pass_on(DramAccess::read, block, missing, false, counters);
-  counters.l2_bytes += bytes_of(missing);
+  next_->count_l2(block, bytes_of(missing), counters);
   next_->serve(block, missing, 0, 0, counters);
 }
 
@@ -147,7 +147,7 @@ void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, 
                          StageCounters& counters) {
   const std::uint64_t bytes = bytes_of(sectors);
   counters.dram_bytes += bytes;
-  if (level_ == Level::rop) counters.l2_bytes += bytes;
+  if (level_ == Level::rop) count_l2(block, bytes, counters);
   if (places_.tally) places_.tally->add(places_.array_of(block), access, counters.stage, bytes, compressed);
   if (places_.log && sectors != 0) record(access, block, sectors, counters);
 }
@@ -182,7 +182,7 @@ void BlockCache::stream_read(std::size_t block, StageCounters& counters) {
   const std::uint64_t raw = bytes_of(all_sectors_);
   const State state = states_[block];
   counters.sector_bytes += raw;
-  if (level_ == Level::l2) counters.l2_bytes += raw;
+  if (level_ == Level::l2) count_l2(block, raw, counters);
   pass_on(DramAccess::read, block, state == kRaw ? all_sectors_ : first_sectors(state), state != kRaw, counters);
 }
 

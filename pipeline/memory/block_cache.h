@@ -91,7 +91,7 @@ class BlockCache {
     finish_request();
     const Sectors sectors = sectors_of(first, bytes, log2_sector_);
     const std::uint32_t count = ((first + bytes - 1) >> log2_sector_) - (first >> log2_sector_) + 1;
-    count_request(times * count << log2_sector_, counters);
+    count_request(block, times * count << log2_sector_, counters);
     serve(block, sectors, 0, 0, counters);
   }
 
@@ -140,9 +140,13 @@ class BlockCache {
     std::array<std::uint32_t, kMaxBlockSectors> written_bytes{};
   };
 
-  void count_request(std::uint64_t bytes, StageCounters& counters) const {
+  void count_request(std::size_t block, std::uint64_t bytes, StageCounters& counters) const {
     counters.sector_bytes += bytes;
-    if (level_ == Level::l2 && !next_) counters.l2_bytes += bytes;
+    if (level_ == Level::l2 && !next_) count_l2(block, bytes, counters);
+  }
+  void count_l2(std::size_t block, std::uint64_t bytes, StageCounters& counters) const {
+    counters.l2_bytes += bytes;
+    if (places_.tally) places_.tally->add_l2(places_.array_of(block), counters.stage, bytes);
   }
   void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters);
   void count_written(std::uint32_t first, std::uint32_t bytes);

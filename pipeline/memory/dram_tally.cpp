@@ -34,8 +34,8 @@ std::vector<ArrayBytes> DramTally::sums() const {
     if (stage.id == StageId::none) continue;
     const auto first = static_cast<std::ptrdiff_t>(all.size());
     for (const Array& array : arrays_)
-      if (const Sums& sums = array.stages[number]; sums.read + sums.written > 0)
-        all.push_back({stage, array.name, sums.read, sums.written, sums.compressed});
+      if (const Sums& sums = array.stages[number]; sums.read + sums.written + sums.l2 > 0)
+        all.push_back({stage, array.name, sums.read, sums.written, sums.compressed, sums.l2});
     std::ranges::sort(all.begin() + first, all.end(), {}, &ArrayBytes::array);
   }
   return all;

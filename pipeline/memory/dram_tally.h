@@ -1,4 +1,4 @@
-// DRAM bytes by the array that they belong to: why a stage reads and writes what it does.
+// Bytes of DRAM and L2 by the array that they belong to: why a stage reads and writes what it does.
 #pragma once
 
 #include <array>
@@ -13,12 +13,14 @@ namespace beampipe {
 
 enum class DramAccess : std::uint8_t { read, write };
 
-// What a stage moves to and from DRAM of one array. An array is one of the frame, or the parts that bins have of it.
+// What a stage moves to and from DRAM of one array, and asks L2 for. An array is one of the frame, or the parts that
+// bins have of it.
 struct ArrayBytes {
   Stage stage;
   std::string array;
   std::uint64_t read = 0, written = 0;
   std::uint64_t compressed = 0;  // of both: of blocks that are compressed
+  std::uint64_t l2 = 0;
 
   bool operator==(const ArrayBytes&) const = default;
 };
@@ -34,6 +36,9 @@ class DramTally {
     (access == DramAccess::read ? sums.read : sums.written) += bytes;
     if (compressed) sums.compressed += bytes;
   }
+  void add_l2(std::uint16_t array, Stage stage, std::uint64_t bytes) {
+    arrays_[array].stages[stage.number()].l2 += bytes;
+  }
   void add(const DramTally& other);
 
   // So many times what other stages have moved, as stages in this pass.
@@ -44,9 +49,11 @@ class DramTally {
 
  private:
   struct Sums {
-    std::uint64_t read = 0, written = 0, compressed = 0;
+    std::uint64_t read = 0, written = 0, compressed = 0, l2 = 0;
 
-    void operator+=(const Sums& other) { read += other.read, written += other.written, compressed += other.compressed; }
+    void operator+=(const Sums& other) {
+      read += other.read, written += other.written, compressed += other.compressed, l2 += other.l2;
+    }
   };
   struct Array {
     std::string name;

@@ -28,13 +28,21 @@ struct ArrayPart {
   std::uint64_t first = 0;  // sector
 };
 
-// Reads or writes `bytes` in a row: whole sectors, each moved once.
-inline void stream_part(const MemorySystem& memory, DramAccess access, const ArrayPart& part, std::uint64_t bytes,
-                        StageCounters& counters) {
+// Moves `bytes` in a row, in whole sectors, between a stage and L2, which has them from elsewhere.
+inline void stream_in_l2(const MemorySystem& memory, std::uint16_t array, std::uint64_t bytes,
+                         StageCounters& counters) {
+  if (!memory.modelled) return;
+  const std::uint64_t whole = memory.sectors(bytes) * memory.sector_bytes;
+  counters.sector_bytes += whole;
+  counters.l2_bytes += whole;
+  if (memory.tally) memory.tally->add_l2(array, counters.stage, whole);
+}
+
+// Moves them between L2 and DRAM.
+inline void stream_in_dram(const MemorySystem& memory, DramAccess access, const ArrayPart& part, std::uint64_t bytes,
+                           StageCounters& counters) {
   if (!memory.modelled) return;
   const std::uint64_t sectors = memory.sectors(bytes);
-  counters.sector_bytes += sectors * memory.sector_bytes;
-  counters.l2_bytes += sectors * memory.sector_bytes;
   counters.dram_bytes += sectors * memory.sector_bytes;
   if (memory.tally) memory.tally->add(part.number, access, counters.stage, sectors * memory.sector_bytes);
   if (memory.log)
@@ -42,17 +50,16 @@ inline void stream_part(const MemorySystem& memory, DramAccess access, const Arr
                     static_cast<std::uint32_t>(sectors), counters.stage);
 }
 
+// Reads or writes `bytes` in a row: whole sectors, each moved once.
+inline void stream_part(const MemorySystem& memory, DramAccess access, const ArrayPart& part, std::uint64_t bytes,
+                        StageCounters& counters) {
+  stream_in_l2(memory, part.number, bytes, counters);
+  stream_in_dram(memory, access, part, bytes, counters);
+}
+
 inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint64_t bytes,
                    StageCounters& counters) {
   stream_part(memory, access, {array, array.number(memory)}, bytes, counters);
-}
-
-// The same, if L2 holds them all.
-inline void stream_in_l2(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
-  if (!memory.modelled) return;
-  const std::uint64_t whole = memory.sectors(bytes) * memory.sector_bytes;
-  counters.sector_bytes += whole;
-  counters.l2_bytes += whole;
 }
 
 // Some records of an array of the frame, read in increasing order. A sector that the previous record shares is not read

@@ -33,7 +33,7 @@ std::vector<std::uint32_t> sort_materials(Bin& bin, const std::vector<std::uint3
   std::vector<std::uint32_t> order = material_sort(triangles, materials.ids, materials.digits, sorting.timed());
   const auto passes = static_cast<std::uint64_t>(materials.digits);
   sorting.streams(sort_item_bytes(order.size(), passes));
-  sorting.moves_in_l2(sort_count_bytes(passes));
+  sorting.moves_in_l2("sort_counts", sort_count_bytes(passes));
   shading.counters.bytes_read += order.size() * kPlaceBytes;
   shading.streams(order.size() * kPlaceBytes);
   return order;

@@ -54,7 +54,7 @@ OrderedList sort_bin(Bin& bin) {
     stage.copies("bin_lists", "bin_list_copies", kSortPasses, entries);
   } else {
     stage.reads("bin_keys", bin.list.size() * kKeyBytes);
-    stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
+    stage.moves_in_l2("bin_lists", 2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
   }
   bin.triangle_fetches().read_setup(ordered.triangles, bin.stage(StageId::conservative_raster).counters);
   return ordered;

@@ -28,7 +28,7 @@ inline void charge_spills(Bin& bin, const BinStage& stage, const ChunkPool& pool
   const std::uint32_t bytes = bin.memory().sector_bytes;
   Bin::KeptInMemory records{stage.counters.stage, pool.peak_in_memory() * bytes};
   if (bin.models_memory() && bin.keeps_pixels_on_chip()) {
-    stage.moves_in_l2(spills.all() * bytes);
+    stage.moves_in_l2(kSpilledRecords, spills.all() * bytes);
     records.reads = spills.reads, records.writes = spills.writes;
   }
   bin.spills(records);

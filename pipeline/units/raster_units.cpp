@@ -46,7 +46,7 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
     const TriangleList blended(first, drawn_.end());
     const BinStage sorting = bin_.stage(StageId::bin_sort);
     std::ranges::copy(sort_far_to_near(bin_.triangles(), blended, sorting.timed()), first);
-    sorting.moves_in_l2(2 * kSortPasses * blended.size() * (sizeof(std::uint32_t) + kKeyBytes));
+    sorting.moves_in_l2("bin_lists", 2 * kSortPasses * blended.size() * (sizeof(std::uint32_t) + kKeyBytes));
     return drawn_;
   }
   drawn_.clear();

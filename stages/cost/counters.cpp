@@ -49,8 +49,8 @@ constexpr CounterInfo kCounters[] = {
     sum("logical_bytes", "logical", "bytes", "bytes_read + bytes_written",
         [](const StageCounters& stage) { return stage.logical_bytes(); }),
     field(sectors, "sector_bytes", "sectors", "bytes",
-          "bytes that the stage requests from the memory system to read or write, in whole sectors of 32 bytes; a "
-          "queue that stays on chip requests nothing",
+          "bytes that the stage requests from the memory system to read or write, in whole sectors (of 32 bytes by "
+          "default); a queue that stays on chip requests nothing",
           &StageCounters::sector_bytes),
     field(outer_memory, "l2_bytes", "L2", "bytes",
           "bytes requested from L2, in whole sectors: what the ROP caches and L1 miss, write back or write through",

@@ -107,6 +107,17 @@ TEST(JsonForm, ObjectsAreReadAndWritten) {
             (std::map<std::string, double>{{"a", 1}, {"b", 2}}));
 }
 
+TEST(JsonForm, ErrorsNameAllMissingKeys) {
+  std::vector<form::Key> keys;
+  for (char key = 'a'; key < 'm'; ++key) keys.push_back({std::string(1, key), "A number."});
+  const auto numbers = form::record(keys, true, form::number());
+  EXPECT_EQ(refusal(numbers, "{}"),
+            R"(/: expected the keys "a", "b", "c", "d", "e", "f", "g", "h", "i", "j" and 2 more, found none of them)");
+  EXPECT_EQ(refusal(numbers, R"({"a": 1, "b": 1, "d": 1, "e": 1, "f": 1, "g": 1, "h": 1, "i": 1, "k": 1, "l": 1})"),
+            R"(/: expected the keys "c", "j", found none of them)");
+  EXPECT_EQ(refusal(numbers, R"({"a": "one"})").find("/a: expected a number"), 0u) << "in the order of the keys";
+}
+
 TEST(JsonForm, ErrorsNamePlaceExpectationAndWhatWasFound) {
   const auto refused = [](const char* text) { return refusal(lamp(), text); };
   EXPECT_EQ(refused("[]"), "/: expected an object, found an array of 0");

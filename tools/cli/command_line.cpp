@@ -109,7 +109,11 @@ Option& Option::one_of(const std::vector<std::string>& choices) {
 
 Option& Option::bytes(std::uint64_t low, std::uint64_t high) {
   option_->transform(CLI::AsSizeValue(false).description(""));
-  option_->check(CLI::Range(low, high).description(""))->type_name("SIZE");
+  const auto refusal = [low, high](const std::string& found) -> std::string {
+    if (CLI::Range(low, high)(found).empty()) return "";
+    return "expected " + std::to_string(low) + " to " + std::to_string(high) + " bytes, such as 64KB, found " + found;
+  };
+  option_->check(CLI::Validator(refusal, ""))->type_name("SIZE");
   return *this;
 }
 

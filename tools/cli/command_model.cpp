@@ -43,7 +43,8 @@ void model(const ModelArguments& arguments) {
       json.push_back({{"folder", folder}, {"times", times_json(report, arguments.times)}});
       if (arguments.energy) json.elements().back()["energy"] = energy_json(report, arguments.times.over);
     } else {
-      std::cout << folder << ":" << times_text(report, arguments.times)
+      const std::string times = times_text(report, arguments.times);  // which may fail
+      std::cout << folder << ":" << times
                 << (arguments.energy ? energy_text(report, arguments.times.over) : std::string());
     }
   }
@@ -61,6 +62,8 @@ void add_model_command(CommandLine& line) {
               "a technique of the run: also print times and energies of the others over its own, with intervals");
   command.add_flag("--sensitivity", arguments->times.sensitivity,
                    "with --over: also print what each rate makes of the quotients at the ends of its range");
+  command.add_flag("--stages", arguments->times.stages,
+                   "also print the stages that take at least 1 % of the time, and what limits each");
   command.add_flag("--energy", arguments->energy, "also print modelled energy, and what stands for area");
   command.add_flag("--json", arguments->json,
                    "print JSON, with the time, the busiest unit and the energy of each stage");
@@ -71,6 +74,7 @@ void add_model_command(CommandLine& line) {
       "nine in ten   the range of nine in ten of these times, if rates are drawn from the ranges in the description\n"
       "on cores      the geometry, and then bins in their order, each on the core that is free first\n"
       "at once       all units at once and evenly: the time of the busiest\n"
+      "busiest       its unit, and the rate of the description that limits it where that is not the unit's own\n"
       "uneven        how much longer the busiest core works than the mean, by operations that shaders can do\n"
       "on chip       what the pixels of a bin take, and how many bins a core has room for\n"
       "even          after a quotient: the interval contains 1\n\n"

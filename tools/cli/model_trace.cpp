@@ -51,6 +51,18 @@ void say_standpoint(const std::string& model, Standpoint standpoint, bool lit) {
             << "; move it with --eye and --target, or with --view " << (is_inside ? "outside" : "inside") << "\n";
 }
 
+// Where the user has put the eye inside, only the light over the shoulder reaches.
+void say_dark(const std::string& model, const Trace& trace, const Viewpoint& viewpoint) {
+  const Bounds bounds = shown_bounds(trace);
+  const glm::dvec3& eye = viewpoint.camera.eye;
+  const bool is_in = glm::all(glm::greaterThan(eye, bounds.low)) && glm::all(glm::lessThan(eye, bounds.high));
+  if (is_in && viewpoint.standpoint == Standpoint::outside && trace.materials.empty() &&
+      trace.frames[0].lighting.lights.empty())
+    std::cerr << "beampipe: note: " << model
+              << ": the eye is among the model's surfaces, and those turned away from the light are black; --ambient "
+                 "0.35 lights them, as with --view inside\n";
+}
+
 ImportedModel read_obj_model(const std::string& file, const ModelOptions& options, std::uint32_t width,
                              std::uint32_t height) {
   const ObjMaterials materials = options.materials == "all"        ? ObjMaterials::all
@@ -212,6 +224,7 @@ Trace trace_of_model(const std::string& file, const ModelOptions& options, const
     }
     const bool lit = !options.unlit && !command.was_given("--ambient");
     if (options.view.empty()) say_standpoint(file, viewpoint.standpoint, lit);
+    if (lit) say_dark(file, trace, viewpoint);
   }
   const glm::vec3 background = options.background.empty() ? glm::vec3(1.0f) : glm::vec3(vector_of(options.background));
   if (glm::clamp(background, 0.0f, kMostColor) != background)

@@ -118,9 +118,10 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .one_of({kByTechnique, kOnChip, kInMemory});
   command
       .add("--on-chip-memory", arguments.on_chip_bytes,
-           "what a core has on chip for the pixels of bins, such as 64KB, in place of what the hardware has. Bins are "
-           "made so small that as many fit as a core works on; if not even one of 8 x 8 fits, pixels are in memory")
-      .bytes(1, std::uint64_t{1} << 31);
+           "what a core has on chip for the pixels of bins, such as 64KB, at least 1KB, in place of what the hardware "
+           "has. Bins are made so small that as many fit as a core works on; if not even one of 8 x 8 fits, pixels are "
+           "in memory")
+      .bytes(1024, std::uint64_t{1} << 31);
   command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");
 }
 
@@ -141,6 +142,9 @@ RunPlan make_plan(const RunArguments& arguments) {
       throw UsageError("-t " + technique.spec +
                        ": expected techniques that work without bins, such as msaa:8, because " + plan.hardware.named +
                        " has none");
+  for (const Technique& technique : plan.techniques)
+    if (const std::string reason = no_room_text(plan.options.memory, technique.framebuffer); !reason.empty())
+      std::cerr << "beampipe: note: " << technique.spec << ": pixels in memory: " << reason << "\n";
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.tev.empty()) plan.viewer = connect_tev(arguments.tev);
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);

@@ -17,7 +17,7 @@ namespace beampipe {
 namespace {
 
 // In "buffers".
-constexpr const char *kABuffer = "a_buffer", *kHeldByBin = "bin";
+constexpr const char* kHeldByBin = "bin";
 
 // Where a counter stands in the JSON of a stage: "ops.add" is the key "add" of the object "ops".
 std::pair<std::string_view, std::string_view> keys_of(const CounterInfo& counter) {
@@ -80,6 +80,8 @@ Form<StageCounters> make_stage_form() {
       .added("modelled_ms", form::by_name(form::amount()).schema,
              "Milliseconds that the modelled hardware takes for this stage, by implementation.")
       .added("busiest_unit", form::by_name(form::text()).schema, "The unit that takes so long, by implementation.")
+      .added("busiest_rate", form::by_name(form::text()).schema,
+             "The rate of the description at which most of that time goes, by implementation.")
       .added("energy_mj", energy_schema(),
              "Millijoules that the modelled hardware takes for this stage, by where they go; by implementation where "
              "they differ.");
@@ -168,12 +170,14 @@ Form<ArrayBytes> array_form() {
       .written("array", &ArrayBytes::array, form::text(), "Where in memory they lie.")
       .written("read", &ArrayBytes::read, form::count(), "Bytes from DRAM.")
       .written("written", &ArrayBytes::written, form::count(), "Bytes to DRAM.")
-      .written("compressed", &ArrayBytes::compressed, form::count(), "Those of both that are of compressed blocks.");
+      .written("compressed", &ArrayBytes::compressed, form::count(), "Those of both that are of compressed blocks.")
+      .written("l2", &ArrayBytes::l2, form::count(), "Bytes asked of L2.");
 }
 
 ArrayBytes array_bytes_of(const Json& json) {
   const auto bytes = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
-  return {stage_named(json), json.at("array").get<std::string>(), bytes("read"), bytes("written"), bytes("compressed")};
+  return {stage_named(json),   json.at("array").get<std::string>(), bytes("read"), bytes("written"),
+          bytes("compressed"), json.value("l2", std::uint64_t{0})};
 }
 
 Form<StoppedDraw> stopped_form() {
@@ -193,7 +197,9 @@ Form<PixelCounterStats> statistics_form() {
 Form<ModelledTime> modelled_form() {
   ObjectForm<ModelledTime> form;
   for (const TimeKind& kind : kTimes) form.written(kind.key, kind.ms, form::amount(), kind.meaning);
-  return form.written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit of all at once.");
+  return form.written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit of all at once.")
+      .written("busiest_rate", &ModelledTime::busiest_rate, form::text(),
+               "The rate of the description at which most of its time goes.");
 }
 
 Form<BinSpread> spread_form() {
@@ -244,7 +250,7 @@ Form<FrameOf> make_frame_form() {
       .written("bin_invocations", filled(&Frame::bin_invocations), form::list(form::count()),
                "Invocations of fragment shaders that each bin starts, row by row.")
       .written("dram_arrays", filled(&Frame::dram_arrays), form::list(array_form()),
-               "What each stage moves to and from DRAM, by array.")
+               "What each stage moves to and from DRAM and asks of L2, by array.")
       .written("stopped", filled(&Frame::stopped), form::list(stopped_form()),
                "Invocations of programs' fragment shaders that took too many steps and count as discarded, by draw.");
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
@@ -314,6 +320,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
       Json& stage = *find_stage(stages, name_of(of_stage.stage));
       stage["modelled_ms"][implementation.name] = of_stage.ms;
       stage["busiest_unit"][implementation.name] = of_stage.busiest;
+      stage["busiest_rate"][implementation.name] = of_stage.busiest_rate;
     }
     if (!has_energy(hardware)) continue;
     const std::vector<StageEnergy> energy = modelled_energy(hardware, implementation, frame.stages);

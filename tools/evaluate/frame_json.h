@@ -11,6 +11,8 @@
 
 namespace beampipe {
 
+inline constexpr const char* kABuffer = "a_buffer";  // its name among the buffers of a frame
+
 // {"rmse": ..., "bias": ...}: measures() that have a value; and back. error_of() throws JsonError if a number is
 // missing.
 Form<ErrorStats> error_form();

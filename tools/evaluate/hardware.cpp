@@ -41,9 +41,24 @@ bool can_do(HardwareUnit::Kind unit, const StageInfo& stage) {
   return false;
 }
 
-bool does_work(const std::string& unit) {
-  const HardwareUnit::Kind kind = info_of_unit(unit).kind;
+bool does_work(HardwareUnit::Kind kind) {
   return kind == HardwareUnit::Kind::fixed_function || kind == HardwareUnit::Kind::shader;
+}
+
+// The name of a unit that the stage may name. If it does work of the other kind, an error says so.
+Form<std::string> unit_form(const StageInfo& stage, const std::vector<std::string>& names) {
+  Form<std::string> unit = form::one_of(names);
+  std::vector<std::string> others;
+  for (const HardwareUnit& each : hardware_units())
+    if (does_work(each.kind) && !can_do(each.kind, stage)) others.emplace_back(each.name);
+  unit.read = [read = unit.read, others, stage = std::string(stage.name),
+               kind = stage.can_be_shader ? "shaders" : "fixed functions"](const JsonCursor& at, std::string& value) {
+    if (at.is_string() && std::ranges::count(others, at.string()) > 0)
+      at.fail(std::string("a unit of ") + kind + ", in which alone " + stage + " is modelled (`beampipe counters " +
+              stage + "`)");
+    read(at, value);
+  };
+  return unit;
 }
 
 // Work of a stage without units would cost nothing, and so would that of a mistyped name. A depth pre-pass runs on the
@@ -55,13 +70,14 @@ Form<UnitsOfStages> units_form() {
     std::vector<std::string> names;
     for (const HardwareUnit& unit : hardware_units())
       if (can_do(unit.kind, stage)) names.emplace_back(unit.name);
-    const Form<std::vector<std::string>> list = form::list(form::one_of(names), "unit");
-    object.add({std::string(stage.name), "The units that it uses.", true, list.schema,
-                [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) {
-                  list.read(at, of[id]);
-                  if (std::none_of(of[id].begin(), of[id].end(), does_work))
-                    at.fail("a unit that does the work of the stage");
-                }});
+    const Form<std::vector<std::string>> list = form::list(unit_form(stage, names), "unit");
+    object.add(
+        {std::string(stage.name), "The units that it uses.", true, list.schema,
+         [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) {
+           list.read(at, of[id]);
+           if (std::ranges::none_of(of[id], [](const std::string& unit) { return does_work(info_of_unit(unit).kind); }))
+             at.fail("a unit that does the work of the stage");
+         }});
   }
   return object;
 }

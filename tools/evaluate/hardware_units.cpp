@@ -6,41 +6,43 @@
 namespace beampipe {
 namespace {
 
-double over(double work, double rate) { return work / rate; }
-
 // Operations on 64-bit integers are in the integer lanes, and issued twice. All that a shader reads and writes, except
 // for texels, passes its core's L1 or shared memory.
-double shader_clocks(const Rates& rates, const StageWork& s) {
+Clocks shader_clocks(const Rates& rates, const StageWork& s) {
   const auto& ops = s.ops;
   const double wide = static_cast<double>(ops.wide), total = static_cast<double>(ops.total());
   const double mul_add = static_cast<double>(ops.mul_add), add = static_cast<double>(ops.add);
   const double narrow = mul_add + add > 0 ? std::max(1 - wide / (mul_add + add), 0.0) : 0;
-  return std::max(
-      {over(total + wide, rates.of_cores("core_issue_per_clk")),
-       narrow * (over(mul_add, rates.of_cores("core_mul_add_per_clk")) + over(add, rates.of_cores("core_add_per_clk"))),
-       over(ops.bit, rates.of_cores("core_bit_per_clk")) + over(wide, rates.of_cores("core_wide_per_clk")),
-       over(ops.fetch, rates.of_cores("core_fetch_per_clk")), over(ops.special, rates.of_cores("core_special_per_clk")),
-       over(ops.convert, rates.of_cores("core_convert_per_clk")),
-       over(s.logical_bytes() - s.texture_bytes, rates.of_cores("core_on_chip_bytes_per_clk"))});
+  Clocks floats = rates.over_cores(mul_add, "core_mul_add_per_clk") + rates.over_cores(add, "core_add_per_clk");
+  floats.count *= narrow;
+  return std::max({rates.over_cores(total + wide, "core_issue_per_clk"), floats,
+                   rates.over_cores(ops.bit, "core_bit_per_clk") + rates.over_cores(wide, "core_wide_per_clk"),
+                   rates.over_cores(ops.fetch, "core_fetch_per_clk"),
+                   rates.over_cores(ops.special, "core_special_per_clk"),
+                   rates.over_cores(ops.convert, "core_convert_per_clk"),
+                   rates.over_cores(s.logical_bytes() - s.texture_bytes, "core_on_chip_bytes_per_clk")});
 }
 
 // A thread waits for each of its operations and loads, and four threads together for a sector. Threads in flight wait
 // at the same time.
-double latency_clocks(const Rates& rates, const StageWork& s) {
+Clocks latency_clocks(const Rates& rates, const StageWork& s) {
+  const auto waits = [&](double times, const char* clocks) { return Clocks{times * rates.at(clocks), clocks}; };
   const auto operations = static_cast<double>(s.ops.total() + s.ops.wide - s.ops.fetch);
   const double loads = static_cast<double>(s.ops.fetch) + static_cast<double>(s.texture_bytes) / kProbeBytes;
   const double from_dram = std::min(static_cast<double>(s.dram_bytes), static_cast<double>(s.l2_bytes));
   const double from_l2 = static_cast<double>(s.l2_bytes) - from_dram;
-  return (operations * rates.at("operation_clocks") + loads * rates.at("fetch_clocks") +
-          4 / s.sector_bytes * (from_l2 * rates.at("l2_clocks") + from_dram * rates.at("dram_clocks"))) /
-         s.threads;
+  Clocks sectors = waits(from_l2, "l2_clocks") + waits(from_dram, "dram_clocks");
+  sectors.count *= 4 / s.sector_bytes;
+  Clocks all = waits(operations, "operation_clocks") + waits(loads, "fetch_clocks") + sectors;
+  all.count /= s.threads;
+  return all;
 }
 
 // What is read and written where pixels are, by bytes of the formats: through the ROP's caches, or in the memory of the
 // cores.
-double pixel_clocks(const Rates& rates, const StageWork& s) {
-  return over(s.logical_bytes(),
-              s.pixels_on_chip ? rates.of_cores("core_on_chip_bytes_per_clk") : rates.at("rop_bytes_per_clk"));
+Clocks pixel_clocks(const Rates& rates, const StageWork& s) {
+  return s.pixels_on_chip ? rates.over_cores(s.logical_bytes(), "core_on_chip_bytes_per_clk")
+                          : rates.over(s.logical_bytes(), "rop_bytes_per_clk");
 }
 
 }  // namespace
@@ -52,61 +54,62 @@ const std::vector<HardwareUnit>& hardware_units() {
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max({over(s.items_in, rates.at("rop_fragments_per_clk")),
-                              over(s.position_tests, rates.at("compose_positions_per_clk")), pixel_clocks(rates, s)});
+             return std::max({rates.over(s.items_in, "rop_fragments_per_clk"),
+                              rates.over(s.position_tests, "compose_positions_per_clk"), pixel_clocks(rates, s)});
            },
        .is_rop = true},
       {.name = "conservative_raster",
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max(over(s.items_in, rates.at("triangles_per_clk")),
-                             over(s.lanes_used, rates.at("conservative_pixels_per_clk")));  // with hidden pixels
+             return std::max(rates.over(s.items_in, "triangles_per_clk"),
+                             rates.over(s.lanes_used, "conservative_pixels_per_clk"));  // with hidden pixels
            }},
       {.name = kDram,
        .kind = Kind::implied,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return over(s.dram_bytes, rates.at("dram_bytes_per_clk") * rates.at("dram_efficiency"));
+             constexpr const char* kPeak = "dram_bytes_per_clk";
+             return Clocks{s.dram_bytes / (rates.at(kPeak) * rates.at(kDramEfficiency)), kPeak};
            }},
       {.name = kExport,
        .kind = Kind::beside,
        .clocks = [](const Rates& rates,
-                    const StageWork& s) { return over(s.bytes_written, rates.at("export_bytes_per_clk")); }},
+                    const StageWork& s) { return rates.over(s.bytes_written, "export_bytes_per_clk"); }},
       {.name = kL2,
        .kind = Kind::implied,
-       .clocks = [](const Rates& rates, const StageWork& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
+       .clocks = [](const Rates& rates, const StageWork& s) { return rates.over(s.l2_bytes, "l2_bytes_per_clk"); }},
       {.name = kLatency, .kind = Kind::implied, .clocks = latency_clocks, .is_of_cores = true},
       {.name = "mask_generator",
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max(over(s.items_in, rates.at("conservative_pixels_per_clk")),
-                             over(s.position_tests, rates.at("mask_positions_per_clk")));
+             return std::max(rates.over(s.items_in, "conservative_pixels_per_clk"),
+                             rates.over(s.position_tests, "mask_positions_per_clk"));
            }},
       {.name = "quads",
        .kind = Kind::beside,
        .clocks = [](const Rates& rates,
-                    const StageWork& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
+                    const StageWork& s) { return rates.over(s.lanes_issued / 4.0, "quads_per_clk"); }},
       {.name = "raster",
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max(over(s.items_in, rates.at("triangles_per_clk")),
-                             over(s.items_out, rates.at("raster_pixels_per_clk")));
+             return std::max(rates.over(s.items_in, "triangles_per_clk"),
+                             rates.over(s.items_out, "raster_pixels_per_clk"));
            }},
       {.name = "rop_fragments",
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")), pixel_clocks(rates, s));
+             return std::max(rates.over(s.items_in, "rop_fragments_per_clk"), pixel_clocks(rates, s));
            },
        .is_rop = true},
       {.name = "rop_samples",
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max(over(s.items_in, rates.at("rop_samples_per_clk")), pixel_clocks(rates, s));
+             return std::max(rates.over(s.items_in, "rop_samples_per_clk"), pixel_clocks(rates, s));
            },
        .is_rop = true},
       {.name = "shader", .kind = Kind::shader, .clocks = shader_clocks, .is_of_cores = true},
@@ -115,18 +118,17 @@ const std::vector<HardwareUnit>& hardware_units() {
        .kind = Kind::fixed_function,
        .clocks =
            [](const Rates& rates, const StageWork& s) {
-             return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")),
-                             over(s.ops.total(), rates.at("sort_operations_per_clk")));
+             return std::max(rates.over(s.items_in, "rop_fragments_per_clk"),
+                             rates.over(s.ops.total(), "sort_operations_per_clk"));
            }},
       {.name = "texture",
        .kind = Kind::beside,
        .clocks = [](const Rates& rates,
-                    const StageWork& s) { return over(s.texture_bytes, rates.of_cores("core_texture_bytes_per_clk")); },
+                    const StageWork& s) { return rates.over_cores(s.texture_bytes, "core_texture_bytes_per_clk"); },
        .is_of_cores = true},
       {.name = "triangles",
        .kind = Kind::beside,
-       .clocks = [](const Rates& rates,
-                    const StageWork& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
+       .clocks = [](const Rates& rates, const StageWork& s) { return rates.over(s.items_in, "triangles_per_clk"); }},
   };
   return all;
 }
@@ -136,6 +138,14 @@ const HardwareUnit& info_of_unit(std::string_view name) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const HardwareUnit& unit) { return unit.name == name; });
   if (found == all.end()) throw std::out_of_range("no unit " + std::string(name));
   return *found;
+}
+
+std::string limit_text(const std::string& unit, const std::string& rate) {
+  constexpr std::string_view kOfCore = "core_", kPerClock = "_per_clk";
+  std::string_view what = rate;
+  if (what.starts_with(kOfCore)) what.remove_prefix(kOfCore.size());
+  if (what.ends_with(kPerClock)) what.remove_suffix(kPerClock.size());
+  return what.starts_with(unit) || what.empty() ? unit : unit + ": " + std::string(what);
 }
 
 }  // namespace beampipe

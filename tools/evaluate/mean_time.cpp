@@ -19,7 +19,8 @@ std::uint64_t seed_of(std::string_view name) {
 void add_stage(const StageTime& stage, double frames, std::vector<StageTime>& mean) {
   const auto is_it = [&](const StageTime& each) { return each.stage == stage.stage; };
   const auto found = std::find_if(mean.begin(), mean.end(), is_it);
-  StageTime& of_mean = found == mean.end() ? mean.emplace_back(StageTime{stage.stage, 0, stage.busiest}) : *found;
+  StageTime& of_mean =
+      found == mean.end() ? mean.emplace_back(StageTime{stage.stage, 0, stage.busiest, stage.busiest_rate}) : *found;
   of_mean.ms += stage.ms / frames;
 }
 
@@ -37,7 +38,7 @@ ModelledTime mean_time(const Hardware& hardware, std::size_t implementation, con
   for (const FrameReport& frame : result.frames) {
     const ModelledTime time = modelled_time(hardware, hardware.implementations[implementation], frame.work());
     for (const TimeKind& kind : kTimes) mean.*kind.ms += time.*kind.ms / frames;
-    if (mean.busiest.empty()) mean.busiest = time.busiest;
+    if (mean.busiest.empty()) mean.busiest = time.busiest, mean.busiest_rate = time.busiest_rate;
     for (const StageTime& stage : time.stages) add_stage(stage, frames, mean.stages);
   }
   return mean;

@@ -5,6 +5,7 @@
 
 #include "pipeline/memory/dram_log.h"
 #include "tools/evaluate/known_specs.h"
+#include "tools/files/format.h"
 
 namespace beampipe {
 namespace {
@@ -125,6 +126,13 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory) {
   if (!memory.binned && memory.framebuffer == Place::on_chip)
     return MemoryConflict{"framebuffer", "in-memory or by-technique where nothing is binned", kOnChip};
   return std::nullopt;
+}
+
+std::string no_room_text(const MemoryParameters& memory, const Framebuffer& framebuffer) {
+  if (!framebuffer.finds_no_room(memory)) return "";
+  const int side = std::min(framebuffer.bin_size_on(memory), kLeastBinSize);  // the smallest that was tried
+  return format("a bin of %d x %d pixels needs %.1f KiB, a core has %.1f KiB", side, side,
+                side * side * framebuffer.on_chip_bytes_per_pixel() / 1024.0, memory.on_chip_bytes / 1024.0);
 }
 
 bool lacks_bins(const MemoryParameters& memory, const Technique& technique) {

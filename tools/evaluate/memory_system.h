@@ -33,6 +33,10 @@ struct MemoryConflict {
 };
 std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory);
 
+// Why the pixels of a technique that should be on chip are not: "a bin of 8 x 8 pixels needs 3.3 KiB, a core has 2.0
+// KiB". Empty if they are, or should not be.
+std::string no_room_text(const MemoryParameters& memory, const Framebuffer& framebuffer);
+
 // Does the technique need bins where the system has none?
 bool lacks_bins(const MemoryParameters& memory, const Technique& technique);
 

@@ -5,7 +5,6 @@
 #include <functional>
 #include <numeric>
 #include <queue>
-#include <tuple>
 #include <utility>
 
 #include "tools/evaluate/hardware_units.h"
@@ -83,17 +82,32 @@ double threads_in_flight(const Hardware& hardware, const StageCounters& stage, c
   return std::clamp(hardware.memory.cores * of_core, 1.0, std::max(threads_of_frame(stage), 1.0));
 }
 
-std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
-                                       const StageCounters& unpriced, const FrameKind& frame) {
+// Of a unit: all, and by the rate that limits it.
+struct UnitTime {
+  double ms = 0;
+  std::map<std::string, double> by_rate = {};
+
+  bool operator<(const UnitTime& other) const { return ms < other.ms; }
+  void operator+=(const UnitTime& other) {
+    ms += other.ms;
+    for (const auto& [rate, part] : other.by_rate) by_rate[rate] += part;
+  }
+};
+using UnitTimes = std::map<std::string, UnitTime>;
+
+UnitTimes times_of(const Hardware& hardware, const Implementation& implementation, const StageCounters& unpriced,
+                   const FrameKind& frame) {
   double registers = 0;
   StageWork stage{with_costs(hardware, unpriced, frame.has_light, registers), frame.bin.bytes > 0};
   stage.threads = threads_in_flight(hardware, stage, frame, registers);
   stage.sector_bytes = hardware.memory.sector_bytes;
   const Rates rates(hardware);
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
-  std::map<std::string, double> times;
+  UnitTimes times;
   const auto use = [&](const std::string& unit) {
-    times[unit] = info_of_unit(unit).clocks(rates, stage) / clocks_per_ms;
+    const Clocks clocks = info_of_unit(unit).clocks(rates, stage);
+    const double ms = clocks.count / clocks_per_ms;
+    times[unit] = {ms, {{clocks.rate, ms}}};
   };
   if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
     for (const std::string& unit : found->second) use(unit);
@@ -116,35 +130,44 @@ bool has_rops(const Implementation& implementation, const std::vector<StageCount
   });
 }
 
-void add_times(std::map<std::string, double>& busy, const std::map<std::string, double>& times) {
-  for (const auto& [unit, ms] : times) busy[unit] += ms;
+void add_times(UnitTimes& busy, const UnitTimes& times) {
+  for (const auto& [unit, time] : times) busy[unit] += time;
 }
 
-std::pair<std::string, double> busiest_of(const std::map<std::string, double>& times) {
-  std::pair<std::string, double> most;
-  for (const auto& [unit, ms] : times)
-    if (ms >= most.second) most = {unit, ms};
+struct Busiest {
+  std::string unit, rate;
+  double ms = 0;
+};
+
+Busiest busiest_of(const UnitTimes& times) {
+  Busiest most;
+  for (const auto& [unit, time] : times) {
+    if (time.ms < most.ms) continue;
+    const auto of_part = [](const auto& part) { return part.second; };
+    most = {unit, std::ranges::max_element(time.by_rate, {}, of_part)->first, time.ms};
+  }
   return most;
 }
 
 // Times of bins on cores: the sums over stages of what units of cores and shared ones do, and of what a core needs for
 // its part of the bins, if all that it holds do their stages one after the other.
 struct BinTimes {
-  std::map<std::string, double> of_cores, shared;
+  UnitTimes of_cores, shared;
   double stages_in_turn_ms = 0;
 
-  void add(const std::map<std::string, double>& stage, double bins_held, double cores) {
+  void add(const UnitTimes& stage, double bins_held, double cores) {
     double alone = 0;  // all bins one by one on each core: latency is that of one bin's threads, shared units are free
-    for (const auto& [unit, ms] : stage) {
-      (info_of_unit(unit).is_of_cores ? of_cores : shared)[unit] += ms;
+    for (const auto& [unit, time] : stage) {
+      const double ms = time.ms;
+      (info_of_unit(unit).is_of_cores ? of_cores : shared)[unit] += time;
       alone = std::max(alone, unit == kLatency ? ms * bins_held : info_of_unit(unit).is_of_cores ? ms : ms / cores);
     }
     stages_in_turn_ms += alone / bins_held;
   }
 
   double ms(double busiest_core) const {
-    const double core = std::max(busiest_of(of_cores).second, stages_in_turn_ms);
-    return std::max(busiest_of(shared).second, core * busiest_core);
+    const double core = std::max(busiest_of(of_cores).ms, stages_in_turn_ms);
+    return std::max(busiest_of(shared).ms, core * busiest_core);
   }
 };
 
@@ -167,7 +190,9 @@ double of_busiest_core(const std::vector<double>& bins, std::uint32_t cores) {
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage, const BinSize& bin, double bins) {
-  return times_of(hardware, implementation, stage, {bin, bins, bins});
+  std::map<std::string, double> times;
+  for (const auto& [unit, time] : times_of(hardware, implementation, stage, {bin, bins, bins})) times[unit] = time.ms;
+  return times;
 }
 
 BinSpread bin_spread(const Hardware& hardware, const FrameWork& work) {
@@ -199,22 +224,23 @@ ModelledTime modelled_time(const Hardware& hardware, const Implementation& imple
                         has_stage(work.stages, StageId::light), has_rops(implementation, work.stages)};
   const double held = hardware.memory.bins_held(work.bin.bytes, work.bin.pixels);
   ModelledTime time;
-  std::map<std::string, double> all, before;
+  UnitTimes all, before;
   BinTimes of_bins;
   for (const StageCounters& stage : work.stages) {
-    const std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, frame);
+    const UnitTimes of_stage = times_of(hardware, implementation, stage, frame);
     add_times(all, of_stage);
     if (is_of_bins(stage.stage)) {
       of_bins.add(of_stage, held, hardware.memory.cores);
     } else {
       add_times(before, of_stage);
     }
-    const auto [unit, ms] = busiest_of(of_stage);
-    time.stages.push_back({stage.stage, ms, unit});
-    time.in_turn_ms += ms;
+    const Busiest busiest = busiest_of(of_stage);
+    time.stages.push_back({stage.stage, busiest.ms, busiest.unit, busiest.rate});
+    time.in_turn_ms += busiest.ms;
   }
-  time.on_cores_ms = busiest_of(before).second + of_bins.ms(bin_spread(hardware, work).busiest_core);
-  std::tie(time.busiest, time.at_once_ms) = busiest_of(all);
+  time.on_cores_ms = busiest_of(before).ms + of_bins.ms(bin_spread(hardware, work).busiest_core);
+  const Busiest busiest = busiest_of(all);
+  time.at_once_ms = busiest.ms, time.busiest = busiest.unit, time.busiest_rate = busiest.rate;
   return time;
 }
 

@@ -52,7 +52,8 @@ std::vector<StageCounters> with_shading(const Hardware& hardware, const std::vec
 struct StageTime {
   Stage stage;
   double ms = 0;
-  std::string busiest;  // the name of the unit that takes so long
+  std::string busiest;       // the name of the unit that takes so long
+  std::string busiest_rate;  // and that of the rate at which most of it goes, by its name in the description
 };
 
 struct ModelledTime {
@@ -63,6 +64,7 @@ struct ModelledTime {
   double on_cores_ms = 0;
   double at_once_ms = 0;          // all stages at once, evenly on all cores: the time of the busiest unit
   std::string busiest;            // the unit of at_once_ms
+  std::string busiest_rate;       // the rate at which most of it goes
   std::vector<StageTime> stages;  // in the order of the stages
 };
 

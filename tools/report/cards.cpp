@@ -29,7 +29,8 @@ Json card_of(const TechniqueSummary& summary, const std::string& color) {
                {"on_chip_bytes", summary.on_chip_bytes_per_pixel * static_cast<double>(summary.bin_pixels)},
                {"bin_pixels", summary.bin_pixels},
                {"pixels_on_chip", summary.pixels_on_chip},
-               {"bytes_per_pixel", summary.bytes_per_pixel}};
+               {"bytes_per_pixel", summary.bytes_per_pixel},
+               {"off_chip", summary.off_chip}};
   if (summary.dram_bytes > 0) card["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
   for (const auto& [implementation, ms] : summary.modelled_ms)
     card["modelled_ms"][implementation] = {

@@ -120,7 +120,7 @@ std::string energy_text(const Report& report, const std::string& over) {
     if (!over.empty()) cells.push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
   return "\nmodelled mJ on " + report.hardware.label + " (" + report.hardware.name + ")\n" +
-         align_columns(rows, {0, 1, rows[0].size() - 1, rows[0].size() - (over.empty() ? 1 : 2)});
+         align_columns(joined_rows(rows, 1), {0, 1, rows[0].size() - 1, rows[0].size() - (over.empty() ? 1 : 2)});
 }
 
 Json energy_json(const Report& report, const std::string& over) {

@@ -5,7 +5,7 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kBounds[] = {"none", "lower", "upper"};  // of PlotPoint::Bound
+constexpr const char* kBounds[] = {"none", "lower", "upper", "beyond"};  // of PlotPoint::Bound
 
 Json to_json(const ScatterPlot& plot) {
   Json json = {{"kind", "scatter"},       {"name", plot.name},       {"title", plot.title},
@@ -14,10 +14,8 @@ Json to_json(const ScatterPlot& plot) {
   for (const PlotSeries& series : plot.series) {
     Json points = Json::array();
     for (const PlotPoint& point : series.points) {
-      points.push_back({{"x", point.x},
-                        {"y", point.y},
-                        {"label", point.label},
-                        {"bound", kBounds[static_cast<int>(point.y_bound)]}});
+      points.push_back(
+          {{"x", point.x}, {"y", point.y}, {"label", point.label}, {"bound", kBounds[static_cast<int>(point.bound)]}});
     }
     json["series"].push_back({{"name", series.name},
                               {"color", series.color},
@@ -37,6 +35,7 @@ Json to_json(const BarPlot& plot) {
   json["parts"] = Json::array();
   for (const BarPlot::Part& part : plot.parts) {
     json["parts"].push_back({{"name", part.name}, {"color", part.color}, {"values", part.values}});
+    if (!part.limits.empty()) json["parts"].elements().back()["limits"] = part.limits;
   }
   if (!plot.marks.empty()) json["marks"] = {{"name", plot.mark_name}, {"values", plot.marks}};
   return json;
@@ -56,7 +55,8 @@ std::vector<Figure> report_figures(const ReportFile& report) {
         {"cost",
          "Memory and accuracy",
          "Up and to the left is better. Above the line a technique needs less memory than MSAA with the same "
-         "error. The memory includes A-buffer, translucent layer and spilled records at their peaks. Triangles mark bounds.",
+         "error. The memory includes A-buffer, translucent layer and spilled records at their peaks. Triangles mark "
+         "bounds.",
          {{"on chip and off chip", storage_plot({report})}, {"off chip", frontier_plot({report})}}});
     Figure speed{"cost", "Time and error", "Down and to the left is better.", {}};
     for (const std::string& implementation : implementations)
@@ -65,17 +65,19 @@ std::vector<Figure> report_figures(const ReportFile& report) {
     speed.choices.emplace_back("wall time of the simulator", speed_plot({report}));
     figures.push_back(std::move(speed));
   }
-  Figure time{"stages",
-              "Time per stage",
-              "Modelled time, one stage after the other. The black mark is where all stages at once would end.",
-              {}};
+  Figure time{
+      "stages",
+      "Time per stage",
+      "Modelled time, one stage after the other; pointing at a stage shows what limits it. The black mark is where all "
+      "stages at once would end.",
+      {}};
   for (const std::string& implementation : implementations)
     time.choices.emplace_back("modelled time: " + name_of(report, implementation), time_plot(report, implementation));
   if (!time.choices.empty()) figures.push_back(std::move(time));
   Figure bytes{"stages", "Bytes per stage", "What each technique reads and writes in a frame.", {}};
-  for (const auto& [label, key] : {std::pair{"DRAM: beyond the modelled caches", "dram_bytes"},
-                                   std::pair{"L2", "l2_bytes"}, std::pair{"sectors of 32 bytes", "sector_bytes"},
-                                   std::pair{"logical: what the stage reads and writes", "logical_bytes"}}) {
+  for (const auto& [label, key] :
+       {std::pair{"DRAM: beyond the modelled caches", "dram_bytes"}, std::pair{"L2", "l2_bytes"},
+        std::pair{"sectors", "sector_bytes"}, std::pair{"logical: what the stage reads and writes", "logical_bytes"}}) {
     if (auto plot = bytes_plot(report, key)) bytes.choices.emplace_back(label, std::move(*plot));
   }
   if (!bytes.choices.empty()) figures.push_back(std::move(bytes));

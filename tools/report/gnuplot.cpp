@@ -147,7 +147,7 @@ void write_axes(std::ostream& script, const ScatterPlot& plot, const LogRange& x
 
 // One data block per series and kind of bound, because each has its own marker.
 void write_series(std::ostream& script, const ScatterPlot& plot) {
-  constexpr int kMarkers[] = {7, 9, 11};  // disc, triangle up (at least), triangle down (at most)
+  constexpr int kMarkers[] = {7, 9, 11, 13};  // disc, triangle up (at least), triangle down (at most), diamond (beyond)
   std::ostringstream blocks, plots;
   int block = 0;
   const auto add = [&](const std::vector<PlotPoint>& points, const std::string& style) {
@@ -162,9 +162,10 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
     const std::string color = " linecolor " + quoted(series.color);
     if (series.line) add(series.points, "lines linewidth 2" + color);
     if (!series.marks) continue;
-    for (const auto bound : {PlotPoint::Bound::none, PlotPoint::Bound::lower, PlotPoint::Bound::upper}) {
+    for (const auto bound :
+         {PlotPoint::Bound::none, PlotPoint::Bound::lower, PlotPoint::Bound::upper, PlotPoint::Bound::beyond}) {
       std::vector<PlotPoint> points = series.points;
-      std::erase_if(points, [&](const PlotPoint& point) { return point.y_bound != bound; });
+      std::erase_if(points, [&](const PlotPoint& point) { return point.bound != bound; });
       add(points, "points pointtype " + std::to_string(kMarkers[static_cast<int>(bound)]) + color);
     }
   }

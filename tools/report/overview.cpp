@@ -162,7 +162,7 @@ Cell emr_cell(const OverviewRun& run, const std::string& spec, bool has_one_metr
   const Json emr = value_of(run, spec, "emr"), bound = value_of(run, spec, "emr_bound");
   if (emr.is_null()) return {bound.is_null() ? Json() : Json({{"text", bound}})};
   const double samples = emr.get<double>();
-  if (bound == "exact") return {samples, has_one_metric ? std::optional(samples) : std::nullopt};
+  if (bound == "estimate") return {samples, has_one_metric ? std::optional(samples) : std::nullopt};
   return {{{"value", samples}, {"text", emr_text({samples, bound == "at least", bound == "at most"})}}};
 }
 

@@ -10,9 +10,9 @@
 namespace beampipe {
 
 struct PlotPoint {
-  double x = 0, y = 0;                                            // positive, because both axes are logarithmic
-  std::string label;                                              // a short text next to the point; empty for none
-  enum class Bound { none, lower, upper } y_bound = Bound::none;  // y is a lower (upper) bound
+  double x = 0, y = 0;  // positive, because both axes are logarithmic
+  std::string label;    // a short text next to the point; empty for none
+  enum class Bound { none, lower, upper, beyond } bound = Bound::none;  // of y; beyond: x is too large to draw
 };
 
 struct PlotSeries {
@@ -36,8 +36,9 @@ struct ScatterPlot {
 struct BarPlot {
   struct Part {
     std::string name;
-    std::string color;           // "#rrggbb"
-    std::vector<double> values;  // one per category
+    std::string color;                     // "#rrggbb"
+    std::vector<double> values;            // one per category
+    std::vector<std::string> limits = {};  // likewise: what limits it; empty: not known
   };
   std::string name, title, y_label;
   std::vector<std::string> categories = {};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/results.h"
 #include "traces/files/json.h"
@@ -64,9 +66,9 @@ void add_ratios(Json& stage) {
   if (issued > 0) stage["lane_use"] = stage.value("lanes_used", 0.0) / issued;
 }
 
-// Adds a unit to a list with commas, unless it is in it.
-void add_unit(std::string& units, const std::string& unit) {
-  if ((", " + units + ",").find(", " + unit + ",") == units.npos) units += (units.empty() ? "" : ", ") + unit;
+// Adds a name to a list with commas, unless it is in it.
+void add_name(std::string& names, const std::string& name) {
+  if ((", " + names + ",").find(", " + name + ",") == names.npos) names += (names.empty() ? "" : ", ") + name;
 }
 
 }  // namespace
@@ -113,13 +115,30 @@ std::optional<EquivalentMsaa> read_emr(const Json& json) {
 }
 
 std::string bound_text(const EquivalentMsaa& emr) {
-  return emr.is_lower_bound ? "at least" : emr.is_upper_bound ? "at most" : "exact";
+  return emr.is_lower_bound ? "at least" : emr.is_upper_bound ? "at most" : "estimate";
+}
+
+// "color, depth, spilled records"
+std::string off_chip_text(const Json& result) {
+  std::string names;
+  const auto add = [&](const Json& named) { add_name(names, named.at("name").get<std::string>()); };
+  const Json surfaces = result.value("framebuffer", Json::array());
+  for (const Json& surface : surfaces.elements()) add(surface);
+  for (const Json& frame : result.at("frames").elements()) {
+    const Json buffers = frame.value("buffers", Json::array());
+    for (const Json& buffer : buffers.elements())
+      for (const std::string_view name : {kABuffer, kTranslucentLayer, kSpilledRecords})
+        if (buffer.at("name") == name) add(buffer);
+  }
+  std::ranges::replace(names, '_', ' ');
+  return names;
 }
 
 TechniqueSummary read_summary(const Json& result) {
   TechniqueSummary summary;
   summary.spec = result.at("technique").get<std::string>();
   summary.bytes_per_pixel = result.at("peak_bytes_per_pixel").get<double>();
+  summary.off_chip = off_chip_text(result);
   summary.on_chip_bytes_per_pixel = result.value("on_chip_bytes_per_pixel", 0.0);
   summary.pixels_on_chip = result.value("pixels_on_chip", false);
   summary.all_bytes_per_pixel = summary.bytes_per_pixel + summary.on_chip_bytes_per_pixel;
@@ -139,7 +158,8 @@ TechniqueSummary read_summary(const Json& result) {
       mean.at_once += time.at("at_once").get<double>() / count;
       mean.on_cores += time.value("on_cores", 0.0) / count;
       mean.in_turn += time.at("in_turn").get<double>() / count;
-      add_unit(mean.busiest, time.value("busiest", std::string()));
+      add_name(mean.busiest,
+               limit_text(time.value("busiest", std::string()), time.value("busiest_rate", std::string())));
     }
   }
   if (const Json* error = result.find("error")) summary.rmse = error->at("rmse").get<double>();
@@ -185,6 +205,11 @@ std::vector<Json> stage_records(const ReportFile& report) {
       divide_numbers(stage, frames.size());
       add_ratios(stage);
       stage["technique"] = result.at("technique");
+      const Json units = stage.value("busiest_unit", Json::object()),
+                 rates = stage.value("busiest_rate", Json::object());
+      for (const auto& [implementation, unit] : units.members())
+        stage["busiest"][implementation] =
+            limit_text(unit.get<std::string>(), rates.value(implementation, std::string()));
       records.push_back(std::move(stage));
     }
   }

@@ -32,13 +32,15 @@ auto read_from_report(const std::filesystem::path& folder, const Read& read) {
 // and one stage after the other.
 struct ModelledMs {
   double at_once = 0, on_cores = 0, in_turn = 0;
-  std::string busiest;  // the unit that limits `at_once`; several, with commas, if they differ from frame to frame
+  std::string busiest;  // what limits `at_once`, as limit_text() writes it; several, with commas, if they differ from
+                        // frame to frame
 };
 
 // Cost and error of one technique, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
   double bytes_per_pixel = 0;          // framebuffer, and at their peaks A-buffer, translucent layer, spilled records
+  std::string off_chip;                // the names of these, as far as there are any
   double on_chip_bytes_per_pixel = 0;  // all buffers that a bin has on chip, at their peaks
   double all_bytes_per_pixel = 0;      // both
   std::uint64_t bin_pixels = 0;        // of the largest bin
@@ -63,7 +65,7 @@ struct ReportFile {
 // JsonError if it is something else.
 std::optional<EquivalentMsaa> read_emr(const Json& json);
 
-// "exact", "at least" or "at most".
+// "estimate", "at least" or "at most".
 std::string bound_text(const EquivalentMsaa& emr);
 
 // Summarises one element of the report's "results". Throws JsonError if it is something else.

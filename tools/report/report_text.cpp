@@ -15,7 +15,8 @@ const std::set<std::string> kInFirstTable = {"rmse", "bias", "p99", "max"};
 // From the lower to the upper end.
 std::string range_text(const EquivalentMsaa& emr) {
   const auto text = [](const std::optional<double>& rate) { return rate ? emr_text({*rate, false, false}) : ""; };
-  return emr.low || emr.high ? text(emr.low) + ".." + text(emr.high) : "";
+  if (!emr.high) return emr.low ? "at least " + text(emr.low) : "";
+  return emr.low ? text(emr.low) + ".." + text(emr.high) : "at most " + text(emr.high);
 }
 
 std::string number_text(std::string_view key, double value) {
@@ -137,6 +138,23 @@ std::string orders_text(const Report& report) {
     row.push_back(format("%.6f", result.order_difference));
   }
   return rows.size() > 1 ? std::string("\n").append(align_columns(rows, {0})) : std::string();
+}
+
+std::vector<std::vector<std::string>> joined_rows(const std::vector<std::vector<std::string>>& rows,
+                                                  std::size_t column) {
+  std::vector<std::vector<std::string>> joined, keys;  // a key: the row without the column
+  for (const std::vector<std::string>& row : rows) {
+    std::vector<std::string> key = row;
+    key.at(column).clear();
+    const auto same = std::ranges::find(keys, key) - keys.begin();
+    if (same < std::ssize(keys)) {
+      joined[static_cast<std::size_t>(same)][column] += ", " + row[column];
+    } else {
+      keys.push_back(key);
+      joined.push_back(row);
+    }
+  }
+  return joined;
 }
 
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left) {

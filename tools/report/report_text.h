@@ -22,6 +22,10 @@ std::string orders_text(const Report& report);
 
 // Aligns the cells of each column. Columns are separated by two blanks. Those whose index is in `left` are aligned on
 // the left, the others on the right.
+// Of rows that differ only in this column, one, with their cells there after commas.
+std::vector<std::vector<std::string>> joined_rows(const std::vector<std::vector<std::string>>& rows,
+                                                  std::size_t column);
+
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left);
 
 // "36.2", "≥ 256" (lower bound), "< 1" (upper bound), "does not converge".

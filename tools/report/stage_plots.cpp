@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "stages/cost/stage.h"
-#include "tools/evaluate/hardware.h"
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/results.h"
 #include "tools/report/colors.h"
 #include "tools/report/plot.h"
@@ -69,6 +69,28 @@ std::optional<Roof> roof_of(const ReportFile& report) {
               gigahertz * rates.at("dram_bytes_per_clk").get<double>() * rates.value(kDramEfficiency, 1.0)};
 }
 
+// Do fixed functions do the stage? The roof is that of shaders.
+bool is_of_fixed_functions(const ReportFile& report, const std::string& implementation, const std::string& stage) {
+  const std::optional<Stage> known = find_stage(stage);
+  if (!known) return false;
+  const Json& described = report.json.at("hardware").at("implementations").at(implementation);
+  const Json units = described.value("units", Json::object());
+  const Json list = units.value(std::string(info_of(known->id).name), Json::array());
+  return std::ranges::any_of(list.elements(), [](const Json& name) {
+    return std::ranges::any_of(hardware_units(), [&](const HardwareUnit& unit) {
+      return unit.kind == HardwareUnit::Kind::fixed_function && name == unit.name;
+    });
+  });
+}
+
+// Puts stages that move no DRAM bytes to the right of all others.
+void place_beyond(const Roof& roof, ScatterPlot& plot) {
+  double right = roof.operations / roof.dram_bytes;
+  for (const PlotSeries& series : plot.series) right = std::max(right, series.points.front().x);
+  for (PlotSeries& series : plot.series)
+    if (series.points.front().bound == PlotPoint::Bound::beyond) series.points.front().x = 2 * right;
+}
+
 // A line that rises from left of the leftmost stage, as long as DRAM is the limit, and then runs flat until right of
 // the rightmost stage.
 PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
@@ -95,6 +117,16 @@ BarPlot time_plot(const ReportFile& report, const std::string& implementation) {
                                   const Json* const times = stage.find("modelled_ms");
                                   return times ? std::optional(times->at(implementation).get<double>()) : std::nullopt;
                                 });
+  for (const Json& stage : stage_records(report)) {
+    const auto bar =
+        std::find(plot.categories.begin(), plot.categories.end(), stage.at("technique").get<std::string>());
+    const auto part = std::ranges::find(plot.parts, stage.at("stage").get<std::string>(), &BarPlot::Part::name);
+    const Json* const limits = stage.find("busiest");
+    if (!limits || bar == plot.categories.end() || part == plot.parts.end()) continue;
+    part->limits.resize(plot.categories.size());
+    part->limits[static_cast<std::size_t>(bar - plot.categories.begin())] =
+        limits->value(implementation, std::string());
+  }
   plot.mark_name = "all stages at once";
   for (const TechniqueSummary& summary : report.techniques)
     if (const auto ms = summary.modelled_ms.find(implementation); ms != summary.modelled_ms.end())
@@ -138,24 +170,39 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
                    .x_label = roof ? "operations per DRAM byte" : "operations per logical byte",
                    .y_label = roof ? "operations per second (" + name_of(report, roof->implementation) + "), billions"
                                    : "operations, millions per frame"};
-  std::string left_out;
+  std::string left_out, of_fixed_functions, beyond;
+  const auto add_name = [](std::string& names, const std::string& name) {
+    names += (names.empty() ? "" : ", ") + name;
+  };
   for (const Json& stage : stage_records(report)) {
     const Json* const times = stage.find("modelled_ms");  // those of references have none
     if (stage.at("technique") != technique || (roof && !times)) continue;
     const std::string name = stage.at("stage").get<std::string>();
+    if (roof && is_of_fixed_functions(report, roof->implementation, name)) {
+      add_name(of_fixed_functions, name);
+      continue;
+    }
     const double ops = stage.at("ops").at("total").get<double>(),
                  bytes = stage.at(roof ? "dram_bytes" : "logical_bytes").get<double>();
     const double ms = roof ? times->at(roof->implementation).get<double>() : 1;
+    const double height = roof ? ops / ms / 1e6 : ops / kMega;
     if (ops > 0 && bytes > 0 && ms > 0) {
-      const double height = roof ? ops / ms / 1e6 : ops / kMega;
       plot.series.push_back({name, stage_color(name), {{ops / bytes, height, name}}});
+    } else if (roof && ops > 0 && ms > 0) {
+      add_name(beyond, name);
+      plot.series.push_back({name, stage_color(name), {{0, height, name, PlotPoint::Bound::beyond}}});
     } else {
-      left_out += (left_out.empty() ? "" : ", ") + name;
+      add_name(left_out, name);
     }
   }
+  if (roof) place_beyond(*roof, plot);
+  if (!beyond.empty()) plot.notes.push_back("At the right edge, as they move no DRAM bytes: " + beyond + ".");
+  if (!of_fixed_functions.empty())
+    plot.notes.push_back(
+        "Not drawn, because the roof is that of shaders, and fixed functions do the work: " + of_fixed_functions + ".");
   if (!left_out.empty())
-    plot.notes.push_back(std::string("Not drawn, because they have no operations or no ") + (roof ? "DRAM " : "") +
-                         "bytes: " + left_out + ".");
+    plot.notes.push_back(std::string("Not drawn, because they have no operations") + (roof ? "" : " or no bytes") +
+                         ": " + left_out + ".");
   if (roof && !plot.series.empty()) plot.series.push_back(roof_line(*roof, plot));
   return plot;
 }

@@ -51,7 +51,8 @@ const std::vector<Source> kTechniqueColumns = {
       kAccuracy},
      "/equivalent_msaa"},
     {{"emr_bound", "EMR is", "",
-      "Whether the EMR is exact or a bound: at least that of the best rung of the MSAA ladder, or at most that of the "
+      "Whether the EMR is an estimate or a bound: at least that of the best rung of the MSAA ladder, or at most that "
+      "of the "
       "worst. It does not converge if the last rungs are worse and fall no more.",
       kAccuracy},
      "/emr_bound"},
@@ -71,7 +72,7 @@ const std::vector<Source> kTechniqueColumns = {
       "Equivalent MSAA rate for visibility alone: the number N at which msaa:N has the same error in visibility.",
       kAccuracy},
      "/visibility/equivalent_msaa"},
-    {{"visibility_emr_bound", "EMR of visibility is", "", "Whether this EMR is exact or a bound.", kAccuracy},
+    {{"visibility_emr_bound", "EMR of visibility is", "", "Whether this EMR is an estimate or a bound.", kAccuracy},
      "/visibility/emr_bound"},
     {{"shading_rmse", "shading", "linear light, 0..1",
       "Root mean square error in shading, where surfaces vary: what the error has beyond that in visibility.",
@@ -82,7 +83,8 @@ const std::vector<Source> kTechniqueColumns = {
      "/framebuffer_bytes_per_pixel"},
     {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
       "Size of framebuffer, A-buffer, translucent layer and spilled records per pixel, in the frame where these are "
-      "largest.", kMemory},
+      "largest.",
+      kMemory},
      "/peak_bytes_per_pixel"},
     {{"msaa_bytes_per_pixel", "as MSAA", "bytes per pixel",
       "Size per pixel of MSAA with the same error: EMR times the bytes of msaa:1.", kMemory},
@@ -107,8 +109,8 @@ const std::vector<Source> kTechniqueColumns = {
       "The part of the DRAM bytes that triangles take: their setup and lists, and in the raster stage their reads.",
       kMemory},
      "/dram_geometry_bytes"},
-    {{"bin_bytes", "pixels of a bin", "bytes", "What the pixels of a bin take on chip; a dash if they are in memory.",
-      kMemory},
+    {{"bin_bytes", "pixels of a bin", "bytes on chip",
+      "What the pixels of a bin take on chip; a dash if they are in memory.", kMemory},
      "/bin_bytes"},
     {{"bins_held", "bins held", "bins", "How many bins a core has room for, at most as many as it works on.", kMemory},
      "/bins_held"},
@@ -190,8 +192,10 @@ std::vector<Source> stage_columns(const ReportFile& report) {
          "/modelled_ms/" + implementation});
   for (const std::string& implementation : implementations_of(report))
     columns.push_back({{"busiest_unit_" + implementation, "busiest, " + implementation, "",
-                        "The unit that takes so long, in the last frame.", kTime},
-                       "/busiest_unit/" + implementation});
+                        "The unit that takes so long, and the rate that limits it where that is not the unit's own; in "
+                        "the last frame.",
+                        kTime},
+                       "/busiest/" + implementation});
   add_energy(columns, report, "mJ");
   return columns;
 }
@@ -212,8 +216,7 @@ const std::vector<Source> kFrameColumns = {
      "/a_buffer_peak_bytes"},
     {{"logical_bytes", "logical", "bytes", "Bytes that all stages read and write, counted at every access.", kMemory},
      "/logical_bytes"},
-    {{"sector_bytes", "sectors", "bytes",
-      "Bytes that all stages request from the memory system, in sectors of 32 bytes.", kMemory},
+    {{"sector_bytes", "sectors", "bytes", "Bytes that all stages request from the memory system, in sectors.", kMemory},
      "/sector_bytes"},
     {{"l2_bytes", "L2", "bytes",
       "Bytes requested from L2, in sectors: what the caches closer to the stages miss or write back.", kMemory},
@@ -419,8 +422,8 @@ std::vector<Json> array_records(const Json& results) {
         const auto stage = each.at("stage").get<std::string>();
         if (std::ranges::find(stages, stage) == stages.end()) stages.push_back(stage);
         Json& sum = sums[{stage, each.at("array").get<std::string>()}];
-        for (const char* key : {"read", "written", "compressed"})
-          sum[key] = sum.value(key, 0.0) + each.at(key).get<double>() / static_cast<double>(frames.size());
+        for (const char* key : {"read", "written", "compressed", "l2"})
+          sum[key] = sum.value(key, 0.0) + each.value(key, 0.0) / static_cast<double>(frames.size());
       }
     }
     for (const std::string& stage : stages)
@@ -429,8 +432,8 @@ std::vector<Json> array_records(const Json& results) {
         Json record = sum;
         record["technique"] = result.at("technique");
         record["stage"] = stage, record["array"] = place.second;
-        record["share"] =
-            sum.at("compressed").get<double>() / (sum.at("read").get<double>() + sum.at("written").get<double>());
+        if (const double moved = sum.at("read").get<double>() + sum.at("written").get<double>(); moved > 0)
+          record["share"] = sum.at("compressed").get<double>() / moved;
         records.push_back(std::move(record));
       }
   }
@@ -441,10 +444,11 @@ const std::vector<Source> kArrayColumns = {
     {{"technique", "technique", "", "The technique's spec."}, "/technique"},
     {{"stage", "stage", "", "The stage that moves the bytes."}, "/stage"},
     {{"array", "array", "", "Where in memory they lie."}, "/array"},
-    {{"read_bytes", "read", "bytes", "Read from DRAM."}, "/read"},
-    {{"written_bytes", "written", "bytes", "Written to DRAM."}, "/written"},
+    {{"l2_bytes", "L2", "bytes", "Asked of L2."}, "/l2"},
+    {{"read_bytes", "DRAM read", "bytes", "Read from DRAM."}, "/read"},
+    {{"written_bytes", "DRAM written", "bytes", "Written to DRAM."}, "/written"},
     {{"compressed", "compressed", "share",
-      "The part of these bytes that is of compressed blocks; the rest is raw. "
+      "The part of the bytes of DRAM that is of compressed blocks; the rest is raw. "
       "Blocks that are cleared move nothing."},
      "/share"},
 };
@@ -490,7 +494,8 @@ std::vector<Table> report_tables(const ReportFile& report) {
     tables.push_back(
         make_table("frames", "Frames", "", with_measures(with_modelled(kFrameColumns, report, "ms", "mJ")), frames));
   const std::vector<Json> arrays = array_records(results);
-  if (!arrays.empty()) tables.push_back(make_table("dram_arrays", "DRAM bytes by array", mean, kArrayColumns, arrays));
+  if (!arrays.empty())
+    tables.push_back(make_table("dram_arrays", "Bytes of L2 and DRAM by array", mean, kArrayColumns, arrays));
   const std::vector<Json> saved = saved_records(results);
   if (!saved.empty()) tables.push_back(make_table("saved", "Saved work", mean, saved_columns(), saved));
   tables.push_back(make_table("framebuffer", "Framebuffers", "", kSurfaceColumns, members(results, "framebuffer")));

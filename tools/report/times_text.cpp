@@ -5,7 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "pipeline/spec.h"
+#include "tools/evaluate/hardware_units.h"
 #include "tools/evaluate/mean_time.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/sensitivity.h"
 #include "tools/files/format.h"
 #include "tools/report/report_text.h"
@@ -68,12 +71,16 @@ BinSpread mean_spread(const Hardware& hardware, const TechniqueReport& result) {
 
 class Rows {
  public:
-  Rows(const Report& report, const TimesOptions& options)
-      : report_(report), options_(options), draws_(drawn_hardware(report.hardware)) {
-    for (const TechniqueReport& result : report.results)
-      if (result.technique == options.over && has_times(result)) over_ = &result;
+  Rows(const Report& report, const TimesOptions& options) : report_(report), draws_(drawn_hardware(report.hardware)) {
+    std::vector<std::string> modelled;
+    for (const TechniqueReport& result : report.results) {
+      if (!has_times(result)) continue;
+      modelled.push_back(result.technique);
+      if (result.technique == options.over) over_ = &result;
+    }
     if (!options.over.empty() && !over_)
-      throw std::runtime_error("--over " + options.over + ": expected a technique of the run");
+      throw std::runtime_error("--over " + options.over +
+                               ": expected a technique of the run: " + list_of(modelled, "or"));
     if (options.sensitivity) ends_ = ends_of_ranges(report.hardware);
     for (std::size_t i = 0; over_ && i < report.hardware.implementations.size(); ++i)
       of_over_.push_back(drawn_time(report.hardware, draws_, i, *over_));
@@ -113,25 +120,19 @@ class Rows {
   }
 
   const Report& report_;
-  const TimesOptions& options_;
   std::vector<Hardware> draws_;
   std::vector<RateEnds> ends_;
   const TechniqueReport* over_ = nullptr;
   std::vector<DrawnTime> of_over_;  // by implementation
 };
 
-// If a technique that has its pixels on chip finds no room there.
-std::string no_room_text(const MemoryParameters& memory, const TechniqueReport& result) {
-  const Framebuffer framebuffer = parse_technique(result.technique).framebuffer;
-  if (!framebuffer.finds_no_room(memory)) return "";
-  const auto side = static_cast<double>(framebuffer.bin_size_on(memory));
-  return format(": %.1f KiB do not fit", side * side * framebuffer.on_chip_bytes_per_pixel() / 1024);
-}
-
 std::string room_text(const Report& report, const TechniqueReport& result) {
   const FrameReport& first = result.frames.front();
   const double bytes = first.open_pixel_bytes();
-  if (bytes == 0) return "in memory" + no_room_text(report.memory, result);
+  if (bytes == 0) {
+    const std::string reason = no_room_text(report.memory, parse_technique(result.technique).framebuffer);
+    return "in memory" + (reason.empty() ? "" : ": " + reason);
+  }
   return format("%.1f KiB, %u of %u bins", bytes / 1024, first.bins_held(report.memory),
                 report.memory.most_bins(first.bin_size().pixels));
 }
@@ -141,17 +142,51 @@ std::string quotient_text(const Quotient& quotient) {
          (quotient.interval.contains(1) ? ", even" : "");
 }
 
+// Rates that change nothing are left out.
+std::string effects_text(const Quotient& quotient) {
+  const std::string as_described = ratio_text(quotient.value);
+  std::vector<std::vector<std::string>> rows = {{"rate", "lowest", "highest"}};
+  for (const RateEffect& effect : quotient.effects) {
+    const std::string low = ratio_text(effect.low), high = ratio_text(effect.high);
+    if (rows.size() <= kRatesShown && (low != as_described || high != as_described))
+      rows.push_back({effect.rate, low, high});
+  }
+  return as_described + (rows.size() > 1 ? "; with one rate at the ends of its range\n" + align_columns(rows, {0})
+                                         : ", whatever the rates in their ranges\n");
+}
+
+// Implementations of a technique that give the same are one.
 std::string sensitivity_text(const std::vector<Row>& all, const std::string& over) {
-  std::string text;
+  struct Effects {
+    const TechniqueReport* result;
+    std::string implementations, text;
+  };
+  std::vector<Effects> effects;
   for (const Row& row : all) {
     if (!row.quotient || row.quotient->effects.empty()) continue;
-    std::vector<std::vector<std::string>> rows = {{"rate", "lowest", "highest"}};
-    for (const RateEffect& effect : row.quotient->effects)
-      if (rows.size() <= kRatesShown) rows.push_back({effect.rate, ratio_text(effect.low), ratio_text(effect.high)});
-    text += "\n" + row.result.technique + " over " + over + ", " + row.implementation.name + ": " +
-            ratio_text(row.quotient->value) + "; with one rate at the ends of its range\n" + align_columns(rows, {0});
+    const std::string text = effects_text(*row.quotient), &name = row.implementation.name;
+    const auto same = std::ranges::find_if(
+        effects, [&](const Effects& each) { return each.result == &row.result && each.text == text; });
+    if (same == effects.end())
+      effects.push_back({&row.result, name, text});
+    else
+      same->implementations += ", " + name;
   }
+  std::string text;
+  for (const Effects& each : effects)
+    text += "\n" + each.result->technique + " over " + over + ", " + each.implementations + ": " + each.text;
   return text;
+}
+
+// Of each technique, and unit and rate of the stages that take at least one per cent of its time.
+std::string stages_text(const std::vector<Row>& all) {
+  std::vector<std::vector<std::string>> rows = {{"technique", "implementation", "stage", "ms", "busiest"}};
+  for (const Row& row : all)
+    for (const StageTime& stage : row.time.stages)
+      if (stage.ms >= 0.01 * row.time.in_turn_ms)
+        rows.push_back({row.result.technique, row.implementation.name, std::string(name_of(stage.stage)),
+                        ms_text(stage.ms), limit_text(stage.busiest, stage.busiest_rate)});
+  return "\nstages of at least 1 % of the time in turn\n" + align_columns(joined_rows(rows, 1), {0, 1, 2, 4});
 }
 
 }  // namespace
@@ -164,22 +199,23 @@ std::string times_text(const Report& report, const TimesOptions& options) {
   for (const Row& row : all) {
     rows.push_back({row.result.technique, row.implementation.name, ms_text(row.time.in_turn_ms),
                     interval_text(row.intervals.at(kTimes[0].key), ms_text), ms_text(row.time.on_cores_ms),
-                    ms_text(row.time.at_once_ms), row.time.busiest, ratio_text(row.spread.busiest_core),
-                    room_text(report, row.result)});
+                    ms_text(row.time.at_once_ms), limit_text(row.time.busiest, row.time.busiest_rate),
+                    ratio_text(row.spread.busiest_core), room_text(report, row.result)});
     if (!options.over.empty()) rows.back().push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
   const std::string title = "\nmodelled ms on " + report.hardware.label + " (" + report.hardware.name + ")\n";
-  return title + align_columns(rows, {0, 1, 6, 8, 9}) +
+  return title + align_columns(joined_rows(rows, 1), {0, 1, 6, 8, 9}) + (options.stages ? stages_text(all) : "") +
          (options.sensitivity ? sensitivity_text(all, options.over) : "");
 }
 
 Json times_json(const Report& report, const TimesOptions& options) {
   Json json = Json::array();
   for (const Row& row : Rows(report, options).all()) {
-    Json stages, units;
+    Json stages, units, rates;
     for (const StageTime& each : row.time.stages) {
       stages[name_of(each.stage)] = each.ms;
       units[name_of(each.stage)] = each.busiest;
+      rates[name_of(each.stage)] = each.busiest_rate;
     }
     Json of_row = {{"technique", row.result.technique},
                    {"hardware", report.hardware.label},
@@ -189,10 +225,12 @@ Json times_json(const Report& report, const TimesOptions& options) {
       of_row[std::string(kind.key) + "_interval"] = row.intervals.at(kind.key).json();
     }
     of_row["busiest"] = row.time.busiest;
+    of_row["busiest_rate"] = row.time.busiest_rate;
     of_row["bin_spread"] = {
         {"busiest_core", row.spread.busiest_core}, {"p99", row.spread.p99}, {"most", row.spread.most}};
     of_row["stages"] = stages;
     of_row["busiest_units"] = units;
+    of_row["busiest_rates"] = rates;
     const FrameReport& first = row.result.frames.front();
     of_row["bin_bytes"] = first.open_pixel_bytes();
     if (first.open_pixel_bytes() > 0) of_row["bins_held"] = first.bins_held(report.memory);

@@ -64,11 +64,19 @@ std::vector<Column> cell_columns() {
   }
   columns.push_back({{"pixels_on_chip", "", "1 if the pixels of a bin are on chip, else 0"},
                      [](const Cell& c) { return Json(c.report.pixels_on_chip ? 1 : 0); }});
+  columns.push_back({{"pixels_per_bin", "px", "of the largest bin, in the first frame"}, [](const Cell& c) {
+                       return c.report.frames.empty() ? Json() : Json(c.report.frames.front().bin_pixels);
+                     }});
+  columns.push_back(
+      {{"bins_held", "bins", "that a core has room for; only where pixels are on chip"}, [](const Cell& c) {
+         const bool is_known = c.report.pixels_on_chip && !c.report.frames.empty();
+         return is_known ? Json(c.report.frames.front().bins_held(c.plan.memory[c.cell.memory])) : Json();
+       }});
   columns.push_back({{"on_chip_bytes_per_pixel", "bytes", "all that a bin has on chip, at its peak, over its pixels"},
                      [](const Cell& c) { return Json(c.report.on_chip_bytes_per_pixel()); }});
-  columns.push_back(
-      {{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and A-buffer, translucent layer and spilled records at their peaks"},
-       [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
+  columns.push_back({{"off_chip_bytes_per_pixel", "bytes",
+                      "the framebuffer, and A-buffer, translucent layer and spilled records at their peaks"},
+                     [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
   columns.push_back({{"operations", "", "operations of all stages"},
                      [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.ops.total(); }); }});
   columns.push_back({{"logical_bytes", "bytes", "read and written by all stages, queues included"},
@@ -123,6 +131,7 @@ std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
     columns.push_back({name + "_ms_high", "ms", "the most of them"});
   }
   columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
+  columns.push_back({"bottleneck_rate", "", "the rate at which most of its time goes", true});
   columns.push_back({"energy_mj_low", "mJ", "modelled energy, the least; the mean over the frames"});
   columns.push_back({"energy_mj_high", "mJ", "the same, the most"});
   return columns;
@@ -148,15 +157,16 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   values.emplace_back(implementation.name);
   Energy energy;
   double longest = -1;
-  std::string busiest;
+  std::string busiest, busiest_rate;
   for (const FrameReport& frame : report.frames) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.work());
-    if (time.at_once_ms > longest) longest = time.at_once_ms, busiest = time.busiest;
+    if (time.at_once_ms > longest) longest = time.at_once_ms, busiest = time.busiest, busiest_rate = time.busiest_rate;
     if (has_energy(hardware)) energy += sum_of(modelled_energy(hardware, implementation, frame.stages));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
   add_times(hardware, row.implementation, report, values);
   values.emplace_back(busiest);
+  values.emplace_back(busiest_rate);
   for (const double mj : {energy.total().low, energy.total().high})
     values.push_back(has_energy(hardware) ? Json(mj / frames) : Json());
 }

@@ -76,6 +76,20 @@ void JsonCursor::expect_keys(std::span<const std::string_view> known, const std:
                      in_quotes(key) + did_you_mean(key, {known.begin(), known.end()}));
 }
 
+void JsonCursor::expect_all(const std::vector<std::string>& keys) const {
+  constexpr std::size_t kNamed = 10;
+  std::vector<std::string> missing;
+  for (const std::string& key : keys)
+    if (!has(key)) missing.push_back(key);
+  if (missing.empty()) return;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(missing.size(), kNamed); ++i)
+    names += (i > 0 ? ", " : "") + in_quotes(missing[i]);
+  if (missing.size() > kNamed) names += " and " + std::to_string(missing.size() - kNamed) + " more";
+  fail(missing.size() == 1 ? "the key " + names : "the keys " + names,
+       "none" + std::string(missing.size() == 1 ? "" : " of them"));
+}
+
 bool JsonCursor::has(std::string_view key) const {
   expect_object();
   return value_->contains(key);

@@ -28,6 +28,7 @@ class JsonCursor {
   }
   // `called`: how an error calls them; empty: it lists them.
   void expect_keys(std::span<const std::string_view> known, const std::string& called = "") const;
+  void expect_all(const std::vector<std::string>& keys) const;  // it has these; an error names up to ten
   bool has(std::string_view key) const;
   JsonCursor operator[](std::string_view key) const;           // required
   std::optional<JsonCursor> find(std::string_view key) const;  // optional

@@ -132,6 +132,13 @@ class ObjectForm {
     return schema;
   }
 
+  std::vector<std::string> required() const {
+    std::vector<std::string> keys;
+    for (const Field<T>& field : fields_)
+      if (field.required) keys.push_back(field.key);
+    return keys;
+  }
+
   // Forms are copied into those of what holds them, so they share their fields.
   auto reader() const {
     const auto self = std::make_shared<const ObjectForm>(*this);
@@ -141,6 +148,7 @@ class ObjectForm {
       at.expect_keys(known, self->keys_);
       for (const Field<T>& field : self->fields_) {
         if (field.required) {
+          if (!at.has(field.key)) at.expect_all(self->required());
           field.read(at[field.key], object);
         } else if (const auto value = at.find(field.key)) {
           field.read(*value, object);

@@ -73,6 +73,9 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", trace, "-t", "beam", "-o", out, "--simd", "avx9"}, 2, "scalar"},
       {{"run", trace, "-t", "beam", "-o", out, "--frames", "1-2"}, 2, "--frames 1-2"},
       {{"run", trace, "-t", "beam", "-o", out, "--threads", "0"}, 2, "--threads"},
+      {{"run", trace, "-t", "beam", "-o", out, "--on-chip-memory", "16"},
+       2,
+       "expected 1024 to 2147483648 bytes, such as 64KB, found 16"},
       {{"run", trace, "-t", "beam", "-o", out, "--repeat", "0"}, 2, "--repeat"},
       {{"run", path("missing.json"), "-t", "beam", "-o", out}, 1, "missing.json"},
       {{"run", path("broken.json"), "-t", "beam", "-o", out}, 1, "broken.json"},
@@ -186,8 +189,10 @@ TEST_F(ProgramTest, AFullDiskLeavesFilesAsTheyWere) {
   const Names before = folder_.list();
   for (const Names& command : commands) {
     SCOPED_TRACE(command[0] + " " + command.back());
-    const FileSizeLimit limit(100);
-    const Outcome outcome = run_program(command);
+    const Outcome outcome = [&] {  // the limit must be over when a failure is printed
+      const FileSizeLimit limit(100);
+      return run_program(command);
+    }();
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_EQ(outcome.err.rfind("beampipe: error: ", 0), 0u) << outcome.err;  // its file is full, too
     EXPECT_EQ(folder_.list(), before) << outcome.err;

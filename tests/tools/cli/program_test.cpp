@@ -544,8 +544,9 @@ TEST_F(ProgramTest, MemoryDoesNotGrowWithTheNumberOfFrames) {
 }
 
 TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
+  std::string notes;
   const auto run = [&](const Names& options) {
-    succeed(joined({"run", path("trace.json"), "-t", "beam", "msaa:4", "-o", path("out")}, options));
+    notes = finish(joined({"run", path("trace.json"), "-t", "beam", "msaa:4", "-o", path("out")}, options)).err;
     return parsed(folder_ / "out/report.json");
   };
   const auto expect = [](const Parsed& result, bool on_chip, int off_chip) {
@@ -566,8 +567,10 @@ TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
   expect(json["results"][1], false, 40);
   json = run({"--on-chip-memory", "2KB"});
   EXPECT_EQ(json["memory_system"]["on_chip_bytes"], 2048);
+  EXPECT_TRUE(notes.starts_with("beampipe: note: beam: pixels in memory: a bin of 8 x 8 pixels needs 2.")) << notes;
   expect(json["results"][0], false, 46);
   expect(run({"--on-chip-memory", "3KB"})["results"][0], true, 6);
+  EXPECT_EQ(notes, "");
 }
 
 }  // namespace beampipe::program_test

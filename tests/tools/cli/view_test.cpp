@@ -104,6 +104,14 @@ TEST_F(ViewTest, MakeTakesACameraFromAFile) {
   EXPECT_GT(camera["far"].get<double>(), 9.0);
 }
 
+TEST_F(ViewTest, AnEyeInsideIsToldOfAmbientLight) {
+  const Names inside = {"make", path("room.obj"), "--eye", "1,1,1", "--target", "3,1,4", "-o", path("room.json")};
+  EXPECT_NE(finish(inside).err.find("--ambient 0.35 lights them, as with --view inside"), std::string::npos);
+  EXPECT_FALSE(frame_of("room.json").contains("ambient"));
+  succeed(joined(inside, {"--ambient", "0"}));
+  succeed({"make", path("room.obj"), "--eye", "1,1,9", "--target", "3,1,4", "-o", path("room.json")});
+}
+
 TEST_F(ViewTest, MakeTakesLight) {
   expect_error({"make", path("model.obj"), "--ambient", "1.1", "-o", path("x.json")}, 2,
                "--ambient: expected a number from 0 to 1");

@@ -78,6 +78,11 @@ TEST(Hardware, ErrorsNameTheKey) {
        "/ranges/rop_samples_per_clk: expected a range around the rate of 512"},
       {"\"compose\":[\"shader\"],", "\"compose\":[\"quads\"],",
        units + "compose: expected a unit that does the work of the stage"},
+      {"\"conservative_raster\":[\"conservative_raster\"]", "\"conservative_raster\":[\"shader\"]",
+       units + "conservative_raster/0: expected a unit of fixed functions, in which alone conservative_raster is "
+               "modelled (`beampipe counters conservative_raster`), found \"shader\""},
+      {"\"motion\":[\"shader\"]", "\"motion\":[\"sorter\"]",
+       units + "motion/0: expected a unit of shaders, in which alone motion is modelled"},
       {"\"compose\":[\"shader\"],", "\"compose\":[\"l2\"],", units + "compose/0: expected one of"},
       {"\"compose\":[\"shader\"],", "\"compose\":[\"latency\"],", units + "compose/0: expected one of"},
       {"\"dram_clocks\":375,", "\"dram_clocks\":100,", "/rates/dram_clocks: expected at least the l2_clocks of 193"},
@@ -95,7 +100,7 @@ TEST(Hardware, ErrorsNameTheKey) {
        "/sources/clock_mhz: expected where the number is from, or that it is a choice, found nothing"},
       {"[\"rop_samples\"]", "[\"rop\"]", units + "depth_test/0: expected one of \"composer\""},
       // The counters of `shade` say nothing to a unit of composition.
-      {"\"shade\":[\"quads\",", "\"shade\":[\"composer\",", units + "shade/0: expected one of \"export\""},
+      {"\"shade\":[\"quads\",", "\"shade\":[\"composer\",", units + "shade/0: expected a unit of shaders"},
       {"\"compose\":[\"shader\"", "\"prepass_compose\":[\"shader\"",
        units + "prepass_compose: expected the name of a stage"}};
   for (const auto& [whole, broken, start] : cases) {

@@ -67,6 +67,18 @@ TEST(MemorySystem, ByTechniqueTakesBackAnotherPlace) {
   EXPECT_EQ(memory, MemoryParameters{});
 }
 
+// 80 bytes for each of 64 pixels, which are the fewest.
+TEST(MemorySystem, AReasonNamesTheSmallestBinThatFindsNoRoom) {
+  const Framebuffer framebuffer = parse_technique("msaa:8").framebuffer;
+  MemoryParameters memory;
+  memory.on_chip_bytes = 3 * 1024;
+  EXPECT_EQ(no_room_text(memory, framebuffer), "") << "pixels belong in memory";
+  memory.framebuffer = Place::on_chip;
+  EXPECT_EQ(no_room_text(memory, framebuffer), "a bin of 8 x 8 pixels needs 5.0 KiB, a core has 3.0 KiB");
+  memory.on_chip_bytes = 5 * 1024;
+  EXPECT_EQ(no_room_text(memory, framebuffer), "");
+}
+
 TEST(MemorySystem, ErrorsNameTheKey) {
   EXPECT_EQ(refusal("\"l2_byte\": 65536").find("m.json: /parameters/l2_byte: expected one of the keys"), 0u);
   EXPECT_NE(refusal("\"l2_byte\": 65536").find("(did you mean 'l2_bytes'?)"), std::string::npos);

@@ -4,6 +4,7 @@
 
 #include "tests/test.h"
 #include "tools/evaluate/frame_report.h"
+#include "tools/evaluate/hardware_units.h"
 #include "traces/scenes.h"
 
 namespace beampipe::modelled_time_test {
@@ -57,6 +58,56 @@ TEST(ModelledTime, ColoursGoToRops) {
   const std::vector<StageCounters> stages = {shade, StageCounters{StageId::compose}, StageCounters{StageId::resolve}};
   EXPECT_NEAR(clocks(mali, modelled_time(mali, mali.implementations.at(0), {stages}).in_turn_ms), 3840.0 / 640, 1e-6)
       << "ROPs resolve what cores have kept on chip";
+}
+
+// 5120 bytes of pixels at 10240 per clock on chip or 2048 in memory, or 4800 samples at 768. The sums of a unit have
+// the rate at which most of them go.
+TEST(ModelledTime, TheRateThatLimitsAUnitIsNamed) {
+  const Hardware titan = titan_without_latency();
+  const auto rate = [&](std::uint64_t samples, std::uint64_t bytes, double bin_bytes) {
+    StageCounters counters{StageId::depth_test};
+    counters.items_in = samples, counters.bytes_read = bytes;
+    const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {{counters}, {bin_bytes}});
+    EXPECT_EQ(time.busiest, "rop_samples");
+    EXPECT_EQ(time.stages.at(0).busiest_rate, time.busiest_rate);
+    return time.busiest_rate;
+  };
+  EXPECT_EQ(rate(4800, 5120, 1024), "rop_samples_per_clk");
+  EXPECT_EQ(rate(48, 5120, 1024), "core_on_chip_bytes_per_clk");
+  EXPECT_EQ(rate(48, 5120, 0), "rop_bytes_per_clk");
+  StageCounters floats{StageId::compose}, bits{StageId::bin_sort};
+  floats.ops.add = 5120 * 30, bits.ops.bit = 5120 * 40;
+  const auto sum = modelled_time(titan, titan.implementations.at(0), {{floats, bits, floats}});
+  EXPECT_EQ(sum.stages.at(0).busiest_rate, "core_add_per_clk");
+  EXPECT_EQ(sum.stages.at(1).busiest_rate, "core_bit_per_clk");
+  EXPECT_EQ(sum.busiest_rate, "core_add_per_clk") << "30 + 30 clocks, and 40 of bits";
+}
+
+// On hardware of any kind, the rate that is named is the one to change.
+TEST(ModelledTime, TheRateThatIsNamedShortensTheTime) {
+  const Trace trace = make_scene("fence", {.triangles = 1000, .width = 64, .height = 40});
+  for (const std::string& name : hardware_names()) {
+    const Hardware hardware = read_hardware(name);
+    for (const char* spec : {"beam", "casav", "msaa:32"}) {
+      const FrameResult frame = parse_technique(spec).render(trace, 0, {.memory = hardware.memory});
+      for (const Implementation& implementation : hardware.implementations) {
+        const ModelledTime before = modelled_time(hardware, implementation, {frame.stages, {8192, 256}});
+        Hardware faster = hardware;
+        const bool is_wait = before.busiest == "latency";
+        faster.rates.at(before.busiest_rate) *= is_wait ? 0.5 : 2;
+        const ModelledTime after = modelled_time(faster, implementation, {frame.stages, {8192, 256}});
+        EXPECT_LT(after.at_once_ms, before.at_once_ms) << name << ' ' << spec << ' ' << before.busiest_rate;
+      }
+    }
+  }
+}
+
+TEST(ModelledTime, LimitsNameTheRateUnlessItIsTheUnitsOwn) {
+  EXPECT_EQ(limit_text("rop_samples", "rop_samples_per_clk"), "rop_samples");
+  EXPECT_EQ(limit_text("rop_samples", "core_on_chip_bytes_per_clk"), "rop_samples: on_chip_bytes");
+  EXPECT_EQ(limit_text("dram", "dram_bytes_per_clk"), "dram");
+  EXPECT_EQ(limit_text("latency", "dram_clocks"), "latency: dram_clocks");
+  EXPECT_EQ(limit_text("shader", ""), "shader") << "of a report by an older version";
 }
 
 // A picture of small triangles takes as long as their setup; rasterizing them has units of its own.

@@ -49,7 +49,7 @@ TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReferen
   EXPECT_EQ(plot.series[1].points[0].x, 42);
   EXPECT_EQ(plot.series[1].points[0].y, 100);
   EXPECT_EQ(plot.series[1].points[0].label, "beam");
-  EXPECT_EQ(plot.series[1].points[0].y_bound, PlotPoint::Bound::none);
+  EXPECT_EQ(plot.series[1].points[0].bound, PlotPoint::Bound::none);
 }
 
 TEST_F(PlotTest, StorageIsAllMemoryOnChipAndOffChip) {
@@ -97,7 +97,7 @@ TEST_F(PlotTest, SeveralReportsGiveGeometricMeansAndTheirBounds) {
   EXPECT_NEAR(*mean.rmse, 0.02, 1e-9);
   EXPECT_NEAR(mean.wall_ms, 100, 1e-9);
   EXPECT_NEAR(mean.bytes_per_pixel, 42, 1e-9);
-  EXPECT_EQ(frontier_plot(reports).series[1].points[0].y_bound, PlotPoint::Bound::lower);
+  EXPECT_EQ(frontier_plot(reports).series[1].points[0].bound, PlotPoint::Bound::lower);
 
   const ReportFile other = read_report(make_report("c", report_text("alpha", 10, 4, 0.01, 50)));
   const std::vector<TechniqueSummary> common = mean_summaries({reports[0], other});

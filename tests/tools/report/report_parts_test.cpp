@@ -172,6 +172,39 @@ TEST_F(ReportParts, ATechniqueWithoutModelledTimesHasNoRoofline) {  // as `compa
   EXPECT_TRUE(roofline_plot(report, "reference:set=2").series.empty());
 }
 
+// Of two stages, one moves no DRAM bytes, and fixed functions do the other.
+TEST_F(ReportParts, StagesThatTheRooflineHasNoPlaceForAreNamed) {
+  const std::string more = R"({"stage": "shade", "ops": {"total": 40000000}, "bytes_read": 8, "bytes_written": 0,
+      "dram_bytes": 0, "modelled_ms": {"shaders": 4}}, {"stage": "depth_test", "ops": {"total": 7}, "bytes_read": 8,
+      "bytes_written": 0, "dram_bytes": 8, "modelled_ms": {"shaders": 4}}, )";
+  std::string text = report_with(R"({"stage": "compose")", more);
+  text = replaced(text, R"({"shaders": {}})",
+                  R"({"shaders": {"units": {"shade": ["shading"], "depth_test": ["rop_samples"]}}})");
+  const ScatterPlot plot = roofline_plot(read(text), "beam");
+  ASSERT_EQ(plot.series.size(), 3u) << "two stages and the roof";
+  const PlotPoint& shade = plot.series[0].points[0];
+  EXPECT_EQ(shade.label, "shade");
+  EXPECT_EQ(shade.bound, PlotPoint::Bound::beyond);
+  EXPECT_EQ(shade.x, 20) << "twice as far as the roof's ridge";
+  EXPECT_NEAR(shade.y, 10, 1e-9);
+  EXPECT_EQ(plot.notes, (std::vector<std::string>{
+                            "At the right edge, as they move no DRAM bytes: shade.",
+                            "Not drawn, because the roof is that of shaders, and fixed functions do the work: "
+                            "depth_test."}));
+}
+
+TEST_F(ReportParts, TheTimesOfStagesNameWhatLimitsThem) {
+  std::string text = kReport;
+  const std::string last = R"("modelled_ms": {"shaders": 0.3})";
+  text =
+      replaced(text, last,
+               last + R"(, "busiest_unit": {"shaders": "shader"}, "busiest_rate": {"shaders": "core_issue_per_clk"})");
+  const ReportFile report = read(text);
+  EXPECT_EQ(time_plot(report, "shaders").parts.at(0).limits, std::vector<std::string>{"shader: issue"});
+  expect_cells(named(report_tables(report), "stages"), 0, {{"busiest_unit_shaders", "shader: issue"}});
+  EXPECT_TRUE(time_plot(read(), "shaders").parts.at(0).limits.empty()) << "an older version did not tell";
+}
+
 TEST_F(ReportParts, WithoutHardwareTheRooflineIsAboutLogicalBytes) {
   const ScatterPlot plot = roofline_plot(read(replaced(kReport, "\"hardware\"", "\"software\"")), "beam");
   ASSERT_EQ(plot.series.size(), 1u);
@@ -253,9 +286,12 @@ TEST_F(ReportParts, TheBaselineIsMsaa8OrElseAnotherMsaaOrElseTheFirst) {
 TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   std::string text = kReport;
   text.insert(text.find("\"peak_bytes_per_pixel\""), R"("on_chip_bytes_per_pixel": 2.5, )");
-  text.insert(text.find("\"dram_bytes\": 800"), R"("bin_pixels": 1024, )");
+  text.insert(text.find("\"dram_bytes\": 800"),
+              R"("bin_pixels": 1024, "buffers": [{"name": "bin_lists", "peak_bytes": 4},
+      {"name": "spilled_records", "peak_bytes": 7}], )");
   text.replace(text.find("\"in_turn\": 3"), 12, R"("in_turn": 3, "busiest": "dram")");
-  text.replace(text.find("\"in_turn\": 5"), 12, R"("in_turn": 5, "busiest": "shader")");
+  text.replace(text.find("\"in_turn\": 5"), 12,
+               R"("in_turn": 5, "busiest": "shader", "busiest_rate": "core_issue_per_clk")");
   const Json cards = report_cards(read(text));
   EXPECT_EQ(cards.at("implementations"), Json::array({"shaders"}));
   ASSERT_EQ(cards.at("cards").size(), 1u) << "the reference has none";
@@ -264,8 +300,9 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   EXPECT_EQ(card.at("on_chip_bytes_per_pixel"), 2.5);
   EXPECT_EQ(card.at("on_chip_bytes"), 2560.0);
   EXPECT_EQ(card.at("bytes_per_pixel"), 49.0);
+  EXPECT_EQ(card.at("off_chip"), "mask, spilled records") << "what the frame has in memory, without its bins";
   EXPECT_EQ(card.at("modelled_ms").at("shaders"),
-            (Json{{"at_once", 3.0}, {"on_cores", 0.0}, {"in_turn", 4.0}, {"busiest", "dram, shader"}}));
+            (Json{{"at_once", 3.0}, {"on_cores", 0.0}, {"in_turn", 4.0}, {"busiest", "dram, shader: issue"}}));
   EXPECT_EQ(card.at("rmse"), 0.02);
   EXPECT_EQ(card.at("emr"), 8.0);
   EXPECT_EQ(card.at("emr_bound"), "at least");

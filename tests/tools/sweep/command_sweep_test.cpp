@@ -111,6 +111,9 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
     EXPECT_EQ(row["on_cores_ms"], time["on_cores"].dump()) << key;
     EXPECT_EQ(row["in_turn_ms"], time["in_turn"].dump()) << key;
     EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>()) << key;
+    EXPECT_EQ(row["bottleneck_rate"], time["busiest_rate"].get<std::string>()) << key;
+    EXPECT_EQ(row["pixels_per_bin"], frame["bin_pixels"].dump()) << key;
+    EXPECT_EQ(row["bins_held"].empty(), !result["pixels_on_chip"].get<bool>()) << key;
 
     const Parsed& all_compared = comparisons[row["hardware"] + bin]["results"];
     const auto same = std::find_if(all_compared.begin(), all_compared.end(),

@@ -14,12 +14,12 @@ function timeLines(time) {
 
 // What a card lists: a name, the number, its text, and more lines that explain it.
 function cardRows(card, implementation) {
-  const time = card.modelled_ms?.[implementation], bound = { exact: "", "at least": "≥ ", "at most": "≤ " };
+  const time = card.modelled_ms?.[implementation], bound = { estimate: "", "at least": "≥ ", "at most": "≤ " };
   const rows = [
     ["DRAM", card.dram_bytes, bytesText, []],
-    ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin of ${numberText(card.bin_pixels)} pixels`,
+    ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes, "bytes on chip")} per bin of ${numberText(card.bin_pixels)} pixels`,
       `pixels are ${card.pixels_on_chip ? "on chip" : "in memory"}`]],
-    ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, ["framebuffer, A-buffer"]],
+    ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [card.off_chip]],
     ["time", time?.at_once, (value) => `${shortText(value)} ms`,
       time ? timeLines(time) : []],
     ["RMSE", card.rmse, shortText, []],

@@ -19,6 +19,7 @@ const kCountScales = [[1e10, 1e9, "billions"], [1e7, 1e6, "millions"], [1e4, 1e3
 // 10 000 become thousands, millions or billions. Per pixel, and of everything else, units stay as they are.
 function readableUnit(unit, most) {
   const [what, per] = unit.split(" per ");
+  if (what === "bytes on chip") return { size: 1024, unit: "KiB" };  // as sizes of memories are given
   const scales = per === "pixel" ? [] : what === "bytes" ? kByteScales
     : /^(items|operations|lanes|pairs|cells|triangles|tiles|pixels|positions|fragments)$/.test(what) ? kCountScales : [];
   const [, size, name] = scales.find(([from]) => most >= from) ?? [0, 1, ""];
@@ -26,7 +27,7 @@ function readableUnit(unit, most) {
   return { size, unit: (what === "bytes" ? name : `${name} of ${what}`) + (per ? ` per ${per}` : "") };
 }
 
-function bytesText(bytes) {
-  const { size, unit } = readableUnit("bytes", bytes);
+function bytesText(bytes, kind = "bytes") {
+  const { size, unit } = readableUnit(kind, bytes);
   return `${shortText(bytes / size)} ${unit}`;
 }

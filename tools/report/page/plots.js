@@ -1,6 +1,7 @@
 // Plots, drawn by D3 in the width of the page. The choice of what is modelled, on top of the page, holds for all of them.
 
-const boundText = { none: "", lower: "≥ ", upper: "≤ " };
+const boundText = { none: "", lower: "≥ ", upper: "≤ ", beyond: "" };
+const boundTurn = { none: 0, lower: 0, upper: 180, beyond: 90 };  // of the triangle, in degrees
 
 // Places each label where it covers no obstacle and no other label. Labels without such a place are left out.
 // Obstacles are squares: { x, y, radius }.
@@ -81,10 +82,10 @@ function drawScatter(svg, plot, width) {
   });
   const symbol = (p) => d3.symbol().size(75).type(p.bound === "none" ? d3.symbolCircle : d3.symbolTriangle)();
   area.selectAll(".point").data(points.filter((p) => p.mark)).join("path").attr("class", "point").attr("tabindex", 0).attr("role", "img")
-    .attr("transform", (p) => `translate(${x(p.x)},${y(p.y)}) rotate(${p.bound === "upper" ? 180 : 0})`)
+    .attr("transform", (p) => `translate(${x(p.x)},${y(p.y)}) rotate(${boundTurn[p.bound]})`)
     .attr("d", symbol).attr("fill", (p) => p.color)
     .attr("data-tip", (p) =>
-      `${p.label}\n${plot.x_label}: ${numberText(p.x)}\n${plot.y_label}: ${boundText[p.bound]}${numberText(p.y)}`)
+      `${p.label}\n${plot.x_label}: ${p.bound === "beyond" ? "no bytes" : numberText(p.x)}\n${plot.y_label}: ${boundText[p.bound]}${numberText(p.y)}`)
     .attr("aria-label", function () { return this.dataset.tip; });
   const labels = area.selectAll(".label").data(points).join("text").attr("class", "label").attr("text-anchor", "middle")
     .attr("dominant-baseline", "central").attr("aria-hidden", true).text((p) => p.label);
@@ -108,8 +109,8 @@ function drawBars(svg, plot, width) {
     .call(d3.axisBottom(x).ticks(inner.width / 80).tickSizeInner(-inner.height).tickPadding(8));
   addAxisLabel(area, plot.y_label, width, margin.left, inner.height + 46);
   plot.categories.forEach((name, i) => {
-    const inUse = plot.parts.map((part) => ({ ...part, value: part.values[i] })).filter((part) => part.value !== 0);
-    const list = inUse.map((part) => `${part.name}: ${numberText(part.value)}`);
+    const inUse = plot.parts.map((part) => ({ ...part, value: part.values[i], limit: part.limits?.[i] })).filter((part) => part.value !== 0);
+    const list = inUse.map((part) => `${part.name}: ${numberText(part.value)}${part.limit ? ` (${part.limit})` : ""}`);
     if (plot.marks) list.push(`${plot.marks.name}: ${numberText(plot.marks.values[i])}`);
     const bar = area.append("g").attr("class", "bar").attr("tabindex", 0).attr("role", "img")
       .attr("transform", `translate(0,${i * step})`)
@@ -125,7 +126,7 @@ function drawBars(svg, plot, width) {
       ends[sign] = to;
       bar.append("rect").attr("class", "part").attr("x", x(Math.min(from, to))).attr("y", 3).attr("height", step - 6)
         .attr("width", Math.max(0, Math.abs(x(to) - x(from)) - 0.5)).attr("fill", part.color)
-        .attr("data-tip", `${name}, ${part.name}: ${numberText(part.value)}, ${plot.y_label}`);
+        .attr("data-tip", `${name}, ${part.name}: ${numberText(part.value)}, ${plot.y_label}${part.limit ? `\nlimited by ${part.limit}` : ""}`);
     }
     if (plot.marks)
       bar.append("line").attr("class", "mark").attr("x1", x(plot.marks.values[i])).attr("x2", x(plot.marks.values[i]))

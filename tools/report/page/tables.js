@@ -20,14 +20,18 @@ function sortTable(heads, body, rows, column) {
   body.replaceChildren(...sorted.map((row) => row.element));
 }
 
-// How the numbers of each column are read: { size, unit }. `isWord`: some of its cells are texts. The reference, whose
-// counts are much larger, has no say in it.
+// How the numbers of each column are read: { size, unit }. `isWord`: some of its cells are texts. Columns of a view that
+// count the same are read in one unit, unless one has far smaller numbers. The reference, whose counts are much larger,
+// has no say in it.
 function columnFormats(table) {
   const rows = table.rows.filter((row) => row[0] !== "reference");
-  return table.columns.map((column, i) => {
+  const columns = table.columns.map(({ unit, view }, i) => {
     const cells = rows.map((row) => valueOf(row[i])), isWord = cells.some((cell) => cell !== null && typeof cell !== "number");
-    const unit = column.unit || (isWord ? "" : "number");
-    return { isWord, ...readableUnit(unit, d3.max(cells.filter((cell) => typeof cell === "number"), Math.abs) ?? 0) };
+    return { unit, view, isWord, most: d3.max(cells.filter((cell) => typeof cell === "number"), Math.abs) ?? 0 };
+  });
+  return columns.map(({ unit, view, isWord, most }) => {
+    const alike = columns.filter((other) => other.unit === unit && other.view === view && other.most < 100 * most);
+    return { isWord, ...readableUnit(unit || (isWord ? "" : "number"), d3.max([most, ...alike.map((other) => other.most)])) };
   });
 }
 
