@@ -112,8 +112,8 @@ UnitTimes times_of(const Hardware& hardware, const Implementation& implementatio
   if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
     for (const std::string& unit : found->second) use(unit);
   if (!frame.has_rops) times.erase(kExport);
-  if (const auto shading = times.extract("shading"))  // the same lanes
-    times["shader"] = std::max(times["shader"], shading.mapped());
+  if (const auto shading = times.extract("shading"))                // the same lanes
+    times["shader"] = std::max(shading.mapped(), times["shader"]);  // which may be new
   if (times.contains("shader")) use(kLatency);
   use(kL2);
   use(kDram);
