@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "pipeline/spec.h"
 #include "tools/evaluate/hardware_units.h"
@@ -47,7 +48,7 @@ struct Row {
   const Implementation& implementation;
   ModelledTime time = {};
   BinSpread spread = {};                           // the means over the frames
-  std::map<const char*, Interval> intervals = {};  // by the key of the time
+  std::map<std::string_view, Interval> intervals = {};  // by the key of the time
   std::optional<Quotient> quotient = {};
 };
 

@@ -12,7 +12,8 @@ namespace beampipe::record_memory_test {
 // A line of 256 bytes has 14 chunks of 18 bytes. Lines start out cleared, and one that is written goes back as a whole.
 TEST(RecordMemory, RecordsTakeTheChunksThatWereGivenBack) {
   const MemoryParameters parameters;
-  RecordMemory memory({parameters}, "records", 3, {26, 18});
+  const MemorySystem system{parameters};  // which it refers to
+  RecordMemory memory(system, "records", 3, {26, 18});
   StageCounters counters;
   std::uint32_t key = 0;
   memory.access({++key, 0, 14, true}, counters);  // the first line: eight sectors
