@@ -8,7 +8,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/install_packages.sh build
 cmake --preset release -DBEAMPIPE_TESTS=OFF -DCMAKE_UNITY_BUILD=ON
-cmake --build --preset release --target beampipe --parallel "$(nproc)"
+cmake --build --preset release --target beampipe beampipe_python --parallel "$(nproc)"
 
 build/release/tools/beampipe make fence -o "$output/fence.json"
 build/release/tools/beampipe compare "$output/fence.json" -t beam casav alpha msaa:1,8,32,256 -o "$output"
+build/release/tools/beampipe report "$output"
+echo "pictures: $output/*/frame_0000.png"

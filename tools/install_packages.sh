@@ -16,6 +16,7 @@ build=(
   node-d3       # D3, which becomes part of the report page
   pybind11-dev python3-dev python3-numpy  # the Python module
   python3-matplotlib                      # `beampipe figure`
+  gnuplot-nox                             # the plots of `beampipe plot` and `beampipe report`
 )
 capture=(
   renderdoc python3-renderdoc python3-numpy
@@ -23,7 +24,6 @@ capture=(
   mesa-vulkan-drivers libgl1-mesa-dri xvfb  # to capture without a GPU and a display
 )
 test=(
-  gnuplot-nox                       # draws the files of `beampipe plot` and the plots of `beampipe report`
   chromium chromium-driver python3  # tests of the report page
   python3-jsonschema                # holds results to their JSON Schemas
   python3-skimage                   # another SSIM
@@ -48,7 +48,7 @@ case ${1:-} in
 esac
 
 missing=()
-for package in "${packages[@]}"; do
+for package in $(printf '%s\n' "${packages[@]}" | sort -u); do
   status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
   [[ $status == installed ]] || missing+=("$package")
 done
@@ -61,11 +61,12 @@ fi
 as_root=()
 if ((EUID != 0)); then
   if ! command -v sudo >/dev/null; then
-    echo "install_packages.sh: sudo is missing. Please install these packages as root: ${missing[*]}" >&2
+    echo "install_packages.sh: sudo is missing. As root: apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 1
   fi
   as_root=(sudo)
 fi
-echo "Installing packages: ${missing[*]}"
+echo "Installing packages, which takes a few minutes: ${missing[*]}"
 "${as_root[@]}" apt-get -qq update
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "${missing[@]}"
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 install -y \
+  --no-install-recommends "${missing[@]}" >/dev/null
