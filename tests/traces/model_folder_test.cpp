@@ -48,7 +48,8 @@ TEST_F(ModelFolderTest, NamesStayInTheFolder) {
 
 TEST_F(ModelFolderTest, LinksOutOfTheFolderAreFollowedIfTheUserSaysSo) {
   const std::string refusal =
-      "W: expected a file in the model's folder (--follow-links allows others), found \"room.mtl\", through a link";
+      "W: expected a file in the model's folder (--follow-links, or --allow-outside of traces, allows others), found "
+      "\"room.mtl\", through a link";
   EXPECT_EQ(error("room/copy.obj", "room.mtl", false), refusal);
   EXPECT_EQ(error("room/copy.obj", "room.mtl", true), "no error");
   EXPECT_EQ(error("room/room.obj", "room.mtl", false), refusal) << "it is beside the link and not beside the model";

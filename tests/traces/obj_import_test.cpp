@@ -60,6 +60,8 @@ TEST_F(ObjImportTest, NamesOfMaterialLibrariesMayHaveBlanks) {
   EXPECT_EQ(colors("mtllib  my room.mtl \r\nmtllib b.mtl\n"), (std::vector<glm::vec3>{red, blue}));
   EXPECT_EQ(colors("mtllib my\\ room.mtl\n"), (std::vector<glm::vec3>{red, kGrey}));
   EXPECT_EQ(colors("mtllib none.mtl b.mtl\n"), (std::vector<glm::vec3>{blue, blue})) << "or there are several";
+  EXPECT_EQ(colors("mtllib " + std::string(255, 'x') + " b.mtl\n"), (std::vector<glm::vec3>{blue, blue}))
+      << "which together are too long for one";
 }
 
 TEST_F(ObjImportTest, BlanksAroundMaterialNamesDoNotCount) {

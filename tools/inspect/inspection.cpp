@@ -27,7 +27,7 @@ glm::dvec3 mean_color(const PixelHistory& history, std::uint32_t fragment, const
   double weight = 0;
   for (const HistoryTerm& term : history.terms)
     if (term.fragment == fragment) sum += term.weight * term.color, weight += term.weight;
-  return weight > 0 ? sum / weight : otherwise;
+  return weight != 0 ? sum / weight : otherwise;
 }
 
 // The surfaces that matter, and the transfers between them.
@@ -59,7 +59,8 @@ void add_explanation(const ExplainedPixel& explained, PixelInspection& inspectio
   std::map<std::uint32_t, double> weights;  // by fragment; the background's number is the greatest
   for (const HistoryTerm& term : history.terms) weights[term.fragment] += term.weight;
   for (const auto& [fragment, weight] : weights)
-    inspection.surfaces.push_back({fragment, weight, std::nullopt, mean_color(history, fragment, glm::dvec3(0.0))});
+    if (weight != 0 || fragment == kNobody)
+      inspection.surfaces.push_back({fragment, weight, std::nullopt, mean_color(history, fragment, glm::dvec3(0.0))});
 }
 
 std::vector<PixelHistory> observed(const Technique& technique, const Trace& trace, std::size_t frame,

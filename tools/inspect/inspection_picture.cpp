@@ -118,7 +118,9 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
   const double bars = kTextLeft + 190;
   double largest = 0;  // what a full bar stands for
   for (const InspectedSurface& surface : surfaces) largest = std::max(largest, surface.largest_part());
-  const auto length_of = [&](double part) { return kBarWidth * std::clamp(part / largest, 0.0, 1.0); };
+  const auto length_of = [&](double part) {
+    return largest > 0 ? kBarWidth * std::clamp(part / largest, 0.0, 1.0) : 0.0;
+  };
   std::string svg =
       text_at(kTextLeft, top, "surface", "class=\"dim\"") +
       text_at(bars, top, format("weight (bar), reference (line); full width %.3g", largest), "class=\"dim\"");

@@ -358,7 +358,8 @@ std::string step_text(const HistoryStep& step, const PixelHistory& history) {
 
 std::string cause_shares_text(const PixelInspection& inspection) {
   const double error = inspection.visibility_error.value_or(inspection.error);
-  const bool is_explained = std::ranges::any_of(inspection.surfaces, [](const auto& each) { return each.truth.has_value(); });
+  const bool is_explained =
+      std::ranges::any_of(inspection.surfaces, [](const auto& each) { return each.truth.has_value(); });
   if (error == 0 || !is_explained) return "";
   std::vector<std::size_t> order(inspection.causes.size());
   std::iota(order.begin(), order.end(), 0);

@@ -7,7 +7,7 @@
 namespace beampipe {
 
 // Where symbolic links may lead:
-//   follow_links   anywhere. Files are sought beside the name of the model.
+//   follow_links   anywhere. Files are sought beside the name of the model, and then beside what it links to.
 //   otherwise      not out of the folder. If the model itself is a link, that is the folder of what it links to.
 class ModelFolder {
  public:

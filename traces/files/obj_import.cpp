@@ -230,14 +230,18 @@ class Libraries {
 
  private:
   bool is_there(const std::string& name) const {
-    std::error_code ignored;
-    return !name.empty() && fs::is_regular_file(folder_.file(name, where_), ignored);
+    try {
+      return !name.empty() && fs::is_regular_file(folder_.file(name, where_));
+    } catch (const std::exception&) {  // several names together may be too long for one, or leave the folder
+      return false;
+    }
   }
 
   // False if there is no such file.
   bool read(const std::string& name) {
     const fs::path file = folder_.file(name, where_);
-    if (!fs::exists(file)) return false;
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return false;
     if (files_.insert(file).second) read(file, where_ + ": " + name);
     return true;
   }

@@ -186,7 +186,7 @@ def _width(text: str) -> float:
 
 def _pieces(name: str) -> list[str]:
     """Where a technique's name may be broken into lines."""
-    return re.findall("[^:,]+[:,]?", name)
+    return re.findall("[^:,]*[:,]|[^:,]+", name)
 
 
 def _lines(name: str, room: float) -> list[str]:
