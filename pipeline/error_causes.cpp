@@ -18,8 +18,6 @@ constexpr int kPositions = 256;  // where surfaces are compared
 
 enum Cause : std::size_t { leak, mask, order, interpenetration, tiny, mixed, rounding };
 
-double root_mean_square(const glm::dvec3& error) { return std::sqrt(glm::dot(error, error) / 3); }
-
 // A triangle in one pixel, or the background.
 struct PixelSurface {
   std::uint32_t triangle = kNoTriangle;
@@ -205,15 +203,15 @@ class TileExplainer {
       explained.surfaces.push_back({each.triangle, each.weight, each.truth, each.color});
     find_transfers(seen, comparer_, explained.transfers);
     const glm::dvec3 error = stored(target_, color) - stored(target_, reference);
-    const double stored_length = root_mean_square(error);
-    if (stored_length == 0) return explained;
+    const double squares = glm::dot(error, error);
+    if (squares == 0) return explained;
     std::array<glm::dvec3, kErrorCauses.size()> errors{};
     for (const AreaTransfer& each : explained.transfers)
       errors[each.cause] += each.area * (seen[each.to].color - seen[each.from].color);
     errors[rounding] = error;
     for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
     for (std::size_t cause = 0; cause < errors.size(); ++cause)
-      explained.causes[cause] = length * glm::dot(errors[cause], error) / glm::dot(error, error);
+      explained.causes[cause] = length * glm::dot(errors[cause], error) / squares;
     return explained;
   }
 
@@ -240,6 +238,8 @@ glm::dvec3 rgb(const Image& image, std::size_t pixel) {
 }
 
 }  // namespace
+
+double root_mean_square(const glm::dvec3& error) { return std::sqrt(glm::dot(error, error) / 3); }
 
 std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, const std::vector<PixelWeights>& weights,
                                                        const Image& image, const Image& reference) {

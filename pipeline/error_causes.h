@@ -42,6 +42,9 @@ inline constexpr std::array kErrorCauses = {"leak", "mask", "order", "interpenet
 std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, const std::vector<PixelWeights>& weights,
                                                        const Image& image, const Image& reference);
 
+// The error of a pixel, from that of its channels: root mean square over R, G and B.
+double root_mean_square(const glm::dvec3& error);
+
 // A triangle in a pixel, or the background (kNoTriangle): its part of the pixel by the technique and by the reference.
 struct ExplainedSurface {
   std::uint32_t triangle;

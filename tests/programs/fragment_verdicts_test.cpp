@@ -130,6 +130,17 @@ struct Scene : ProgramTrace {
   void expect_all(const glm::vec3& color) const {
     expect_all([&](auto) { return color; });
   }
+
+  // What the target stores where kDiscard discards, left of the middle of column 2, and elsewhere. With one shading of
+  // each pixel, at its centre, all of that column is elsewhere.
+  void expect_sides(const glm::vec3& left, const glm::vec3& right) const {
+    for (const char* spec : {"msaa:1", "msaa:4"}) expect(spec, [&](auto x) { return x < 2 ? left : right; });
+    for (const char* spec : {"msaa:32", "reference", "beam"})
+      expect(
+          spec, [&](auto x) { return x < 2   ? left
+                                     : x > 2 ? right
+                                             : 0.5f * (left + right); }, kOfMasks);
+  }
 };
 
 constexpr glm::vec4 kGreen(0, 1, 0, 1), kYellow(1, 1, 0, 1);
@@ -143,14 +154,7 @@ TEST(FragmentVerdicts, WhatIsDiscardedWritesDepthAfterEarlyTestsAlone) {
     Scene scene;
     scene.add(with_modes(kDiscard, is_early ? kEarly : ""), 0.25f, kYellow);
     scene.add(kPlain, 0.75f, kGreen);
-    const glm::vec3 left = is_early ? kBlack : kGreenColor;
-    for (const char* spec : {"msaa:1", "msaa:4"})
-      scene.expect(spec, [&](auto x) { return x < 2 ? left : kYellowColor; });
-    for (const char* spec : {"msaa:32", "reference", "beam"})
-      scene.expect(
-          spec, [&](auto x) { return x < 2   ? left
-                                     : x > 2 ? kYellowColor
-                                             : 0.5f * (left + kYellowColor); }, kOfMasks);
+    scene.expect_sides(is_early ? kBlack : kGreenColor, kYellowColor);
   }
 }
 
@@ -163,14 +167,7 @@ TEST(FragmentVerdicts, WhatIsDiscardedWritesStencilAfterEarlyTestsAlone) {
     DrawState& last = scene.add(kPlain, 0.75f, kGreen).state;
     last.depth.test = last.depth.write = false;
     last.stencil = Stencil{.function = Compare::equal, .reference = 1};
-    const glm::vec3 left = is_early ? kGreenColor : kBlack;
-    for (const char* spec : {"msaa:1", "msaa:4"})
-      scene.expect(spec, [&](auto x) { return x < 2 ? left : kGreenColor; });
-    for (const char* spec : {"msaa:32", "reference", "beam"})
-      scene.expect(
-          spec, [&](auto x) { return x < 2   ? left
-                                     : x > 2 ? kGreenColor
-                                             : 0.5f * (left + kGreenColor); }, kOfMasks);
+    scene.expect_sides(is_early ? kGreenColor : kBlack, kGreenColor);
   }
 }
 

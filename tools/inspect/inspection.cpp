@@ -20,8 +20,6 @@ glm::vec4 color_at(const Image& image, PixelAddress at) {
   return {rgba[0], rgba[1], rgba[2], rgba[3]};
 }
 
-double root_mean_square(const glm::dvec3& error) { return std::sqrt(glm::dot(error, error) / 3); }
-
 glm::dvec3 mean_color(const PixelHistory& history, std::uint32_t fragment, const glm::dvec3& otherwise) {
   glm::dvec3 sum(0.0);
   double weight = 0;

@@ -63,8 +63,7 @@ std::string list_moves(const std::vector<PositionMove>& moves, const char* of_no
 }
 
 std::string counted(std::uint32_t count, const PixelHistory& history) {
-  const std::string unit = unit_of(history);
-  return std::to_string(count) + " " + (count == 1 ? unit.substr(0, unit.size() - 1) : unit);
+  return with_noun(count, history.has_samples ? "sample" : "position");
 }
 
 // Without the sign of what rounds to 0.
@@ -157,8 +156,9 @@ std::string head_text(const PixelInspection& inspection, const std::string& trac
                    ", frame " + std::to_string(inspection.frame) + ", with " + inspection.technique,
                2);
   const std::size_t touching = history.fragments.size();
-  text += format("%zu triangle%s touch%s it, in this order: %s. It has %zu %s.\n\n", touching, touching == 1 ? "" : "s",
-                 touching == 1 ? "es" : "", history.order.c_str(), history.positions.size(), unit_of(history).c_str());
+  text += with_noun(touching, "triangle") + (touching == 1 ? " touches" : " touch") +
+          " it, in this order: " + history.order + ". It has " + std::to_string(history.positions.size()) + " " +
+          unit_of(history) + ".\n\n";
   const glm::dvec3 color(inspection.picture), truth(inspection.reference), error = color - truth;
   text += format("  picture     %s   covered %.4f\n", color_text(color).c_str(), history.pixel.a);
   text += format("  reference   %s\n", color_text(truth).c_str());

@@ -9,6 +9,7 @@
 #include "tools/files/image_io.h"
 #include "tools/report/tables.h"
 #include "traces/files/base64.h"
+#include "traces/files/input_file.h"
 
 namespace beampipe {
 namespace {
@@ -83,13 +84,13 @@ std::filesystem::path file_of(const ReportFile& report, const std::string& name)
   // Symbolic links are followed first.
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::weakly_canonical(report.folder),
-                              path = std::filesystem::weakly_canonical(folder / name, error).lexically_relative(folder);
+                              path = std::filesystem::weakly_canonical(folder / name, error);
   const bool has_controls = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; });
-  if (error || has_controls || name.empty() || path.empty() || *path.begin() == "..") {
+  if (error || has_controls || name.empty() || !is_inside(path, folder)) {
     throw ReportError((report.folder / "report.json").string() + ": it names " + in_quotes(name) +
                       "; expected a file in its own folder");
   }
-  return report.folder / path;
+  return report.folder / path.lexically_relative(folder);
 }
 
 }  // namespace

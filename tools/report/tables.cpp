@@ -52,8 +52,7 @@ const std::vector<Source> kTechniqueColumns = {
      "/equivalent_msaa"},
     {{"emr_bound", "EMR is", "",
       "Whether the EMR is an estimate or a bound: at least that of the best rung of the MSAA ladder, or at most that "
-      "of the "
-      "worst. It does not converge if the last rungs are worse and fall no more.",
+      "of the worst. It does not converge if the last rungs are worse and fall no more.",
       kAccuracy},
      "/emr_bound"},
     {{"emr_low", "EMR from", "samples per pixel",

@@ -24,6 +24,11 @@ void fail_trace(const std::string& where, const std::string& expected, const std
   throw TraceError(where + ": expected " + expected + ", found " + found);
 }
 
+bool is_inside(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const std::filesystem::path relative = path.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
+}
+
 std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where, std::uint64_t most_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);

@@ -12,6 +12,9 @@ namespace beampipe {
 // message is one line.
 [[noreturn]] void fail_trace(const std::string& where, const std::string& expected, const std::string& found);
 
+// Is the path in the folder, or in one inside that, as far as their names tell? Links must have been followed before.
+bool is_inside(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 inline constexpr std::uint64_t kMostInputBytes = std::uint64_t{16} << 30;
 
 // Opens a regular file, or a link to one, of at most `most_bytes`, a multiple of 1 GiB. Pipes and devices are refused,

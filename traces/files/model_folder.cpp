@@ -4,26 +4,22 @@
 #include "traces/files/json.h"
 
 namespace beampipe {
-namespace {
 
 namespace fs = std::filesystem;
-
-bool leaves(const fs::path& relative) { return relative.empty() || *relative.begin() == ".."; }
-
-}  // namespace
 
 ModelFolder::ModelFolder(const fs::path& model, bool follow_links)
     : named_(model.parent_path()), real_(fs::canonical(model).parent_path()), follow_links_(follow_links) {}
 
 fs::path ModelFolder::file(const std::string& name, const std::string& where) const {
   const fs::path relative = fs::path(name).lexically_normal();
-  if (relative.is_absolute() || leaves(relative)) fail_trace(where, "a file in the model's folder", in_quotes(name));
+  if (name.empty() || relative.is_absolute() || !is_inside(relative, ""))
+    fail_trace(where, "a file in the model's folder", in_quotes(name));
   const fs::path beside_name = named_ / relative;
   std::error_code error;
   if (follow_links_) return fs::exists(beside_name, error) ? beside_name : real_ / relative;
   const fs::path path = fs::weakly_canonical(real_ / relative, error);
   const bool is_only_beside_name = !fs::exists(path, error) && fs::exists(beside_name, error);
-  if (path.empty() || leaves(path.lexically_relative(real_)) || is_only_beside_name)
+  if (path.empty() || !is_inside(path, real_) || is_only_beside_name)
     fail_trace(where, "a file in the model's folder (--follow-links, or --allow-outside of traces, allows others)",
                in_quotes(name) + ", through a link");
   return path;

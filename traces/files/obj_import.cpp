@@ -15,6 +15,7 @@
 #include "traces/files/model_folder.h"
 #include "traces/files/model_import.h"
 #include "traces/files/obj_material.h"
+#include "traces/files/trace_io.h"
 #include "traces/files/triangulate.h"
 #include "traces/files/unique_names.h"
 #include "traces/files/vertex_frames.h"
@@ -230,9 +231,10 @@ class Libraries {
 
  private:
   bool is_there(const std::string& name) const {
+    std::error_code ignored;
     try {
-      return !name.empty() && fs::is_regular_file(folder_.file(name, where_));
-    } catch (const std::exception&) {  // several names together may be too long for one, or leave the folder
+      return !name.empty() && fs::is_regular_file(folder_.file(name, where_), ignored);
+    } catch (const TraceError&) {  // several names together may be too long for one, or leave the folder
       return false;
     }
   }

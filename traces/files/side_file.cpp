@@ -1,16 +1,10 @@
 #include "traces/files/side_file.h"
 
+#include "traces/files/input_file.h"
+
 namespace beampipe {
-namespace {
 
 namespace fs = std::filesystem;
-
-bool is_inside(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
-}
-
-}  // namespace
 
 fs::path side_file(const JsonCursor& at, const fs::path& trace_file, bool allow_outside) {
   const fs::path named = at.string();
