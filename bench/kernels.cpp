@@ -156,7 +156,7 @@ void transforms_of_vertices(benchmark::State& state) {
 BENCHMARK(transforms_of_vertices);
 
 void orders_of_planes(benchmark::State& state) {
-  const std::vector<SamplePattern> patterns = cell_patterns(256);
+  const std::vector<PositionOffsets> offsets = offsets_of(cell_patterns(256));
   std::mt19937 random(7);
   std::vector<DepthPlane<float>> planes(kItems);
   for (DepthPlane<float>& plane : planes) plane = random_plane(random);
@@ -164,8 +164,8 @@ void orders_of_planes(benchmark::State& state) {
   float farthest = 0;
   for (auto _ : state) {
     for (std::size_t i = 1; i < planes.size(); ++i) {
-      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
-      farthest += farthest_depth(planes[i], patterns.data(), patterns.size(), masks);
+      nearer_positions(planes[i], planes[i - 1], offsets.data(), offsets.size(), masks);
+      farthest += farthest_depth(planes[i], offsets.data(), offsets.size(), masks);
     }
     benchmark::DoNotOptimize(farthest);
   }

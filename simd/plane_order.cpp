@@ -19,18 +19,12 @@ namespace HWY_NAMESPACE {
 using D = hn::CappedTag<float, kMaxMaskSamples>;
 using Reals = Lanes<D>;
 
-// Pixels from the pixel's centre.
-HWY_INLINE Reals offsets(const std::int32_t* units) {
-  const Reals whole(hn::ConvertTo(D(), hn::Load(hn::RebindToSigned<D>(), units)));
-  return whole * Reals(1.0f / kSubpixelUnits) - Reals(0.5f);
-}
-
 HWY_INLINE DepthPlane<Reals> in_every_lane(const DepthPlane<float>& plane) {
   return {Reals(plane.z), Reals(plane.dzdu), Reals(plane.dzdv)};
 }
 
 void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<float>& other,
-                             const SamplePattern* patterns, std::size_t words, std::uint32_t* masks,
+                             const PositionOffsets* offsets, std::size_t words, std::uint32_t* masks,
                              const std::uint32_t* where) {
   const DepthPlane<Reals> of_plane = in_every_lane(plane), of_other = in_every_lane(other);
   for (std::size_t w = 0; w < words; ++w) {
@@ -38,21 +32,21 @@ void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<fl
     masks[w] = 0;
     if (where && where[w] == 0) continue;
     for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
-      const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
+      const Reals u(hn::Load(D(), offsets[w].u.data() + s)), v(hn::Load(D(), offsets[w].v.data() + s));
       mask |= mask_bits(nearer_formula(of_plane, of_other, u, v)) << s;
     }
     masks[w] = where ? mask & where[w] : mask;
   }
 }
 
-float farthest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
+float farthest_depth_kernel(const DepthPlane<float>& plane, const PositionOffsets* offsets, std::size_t words,
                             const std::uint32_t* masks) {
   const DepthPlane<Reals> of_plane = in_every_lane(plane);
   Reals farthest(kInFront);
   for (std::size_t w = 0; w < words; ++w) {
     if (masks[w] == 0) continue;
     for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
-      const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
+      const Reals u(hn::Load(D(), offsets[w].u.data() + s)), v(hn::Load(D(), offsets[w].v.data() + s));
       farthest = farthest_formula(of_plane, u, v, mask_of_bits<D>(masks[w], s), farthest);
     }
   }
@@ -95,15 +89,22 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace beampipe {
+std::vector<PositionOffsets> offsets_of(const std::vector<SamplePattern>& patterns) {
+  std::vector<PositionOffsets> offsets(patterns.size());
+  for (std::size_t w = 0; w < patterns.size(); ++w)
+    for (std::size_t s = 0; s < kMaxMaskSamples; ++s)
+      offsets[w].u[s] = position_u(patterns[w], s), offsets[w].v[s] = position_v(patterns[w], s);
+  return offsets;
+}
 HWY_EXPORT(nearer_positions_kernel);
-void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const SamplePattern* patterns,
+void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const PositionOffsets* offsets,
                       std::size_t words, std::uint32_t* masks, const std::uint32_t* where) {
-  HWY_DYNAMIC_DISPATCH(nearer_positions_kernel)(plane, other, patterns, words, masks, where);
+  HWY_DYNAMIC_DISPATCH(nearer_positions_kernel)(plane, other, offsets, words, masks, where);
 }
 HWY_EXPORT(farthest_depth_kernel);
-float farthest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
+float farthest_depth(const DepthPlane<float>& plane, const PositionOffsets* offsets, std::size_t words,
                      const std::uint32_t* masks) {
-  return HWY_DYNAMIC_DISPATCH(farthest_depth_kernel)(plane, patterns, words, masks);
+  return HWY_DYNAMIC_DISPATCH(farthest_depth_kernel)(plane, offsets, words, masks);
 }
 HWY_EXPORT(position_sums_kernel);
 PositionSums position_sums(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks) {

@@ -1,8 +1,10 @@
 // Depth planes at mask positions: where one is nearer than another, and the greatest depth of one.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "simd/depth_plane.h"
 #include "simd/sample_pattern.h"
@@ -10,17 +12,23 @@
 
 namespace beampipe {
 
-// Bit s of masks[w]: at position s of patterns[w], `plane` is strictly nearer than `other`. Each pattern has 32
-// positions. With `where`, only the positions in these masks are looked at; the bits of the others are 0. Lanes are
-// across positions. The same bits as the formula on float, on every target.
-void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const SamplePattern* patterns,
+// The positions of a pattern as the formulas take them: from the pixel's centre, in pixels.
+struct PositionOffsets {
+  alignas(64) std::array<float, kMaxMaskSamples> u, v;
+};
+std::vector<PositionOffsets> offsets_of(const std::vector<SamplePattern>& patterns);
+
+// Bit s of masks[w]: at position s of offsets[w], `plane` is strictly nearer than `other`. Each has 32 positions. With
+// `where`, only the positions in these masks are looked at; the bits of the others are 0. Lanes are across positions.
+// The same bits as the formula on float, on every target.
+void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const PositionOffsets* offsets,
                       std::size_t words, std::uint32_t* masks, const std::uint32_t* where = nullptr);
 
 inline constexpr float kNoDepth = 1.0f;  // beyond the far plane, which is at 0
 
 // The greatest depth of `plane` over the positions in `masks`. kInFront when there are none.
 inline constexpr float kInFront = -2.0f;  // nearer than every depth
-float farthest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
+float farthest_depth(const DepthPlane<float>& plane, const PositionOffsets* offsets, std::size_t words,
                      const std::uint32_t* masks);
 
 // The sums of the coordinates of the positions in `masks`, in 1/256 px from the pixel's upper left corner.
@@ -40,7 +48,7 @@ namespace scalar {
 }
 using namespace scalar;
 
-// Position s of a pattern as the formulas take it: from the pixel's centre, in pixels.
+// Position s of a pattern, likewise.
 inline float position_u(const SamplePattern& pattern, std::size_t s) {
   return static_cast<float>(pattern.x[s]) / kSubpixelUnits - 0.5f;
 }

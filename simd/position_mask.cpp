@@ -185,8 +185,7 @@ EdgesTested set_masks(const TriangleInPixel* in, std::size_t count, const Positi
       if (small >> i & 1) {
         set_mask<kColumns>(edges, touched, i, grid, masks[first + i]);
       } else {
-        const EdgesTested of_one = set_long_mask<kColumns>(in[first + i], touched, i, grid, masks[first + i]);
-        tested.narrow += of_one.narrow, tested.wide += of_one.wide;
+        tested += set_long_mask<kColumns>(in[first + i], touched, i, grid, masks[first + i]);
       }
     }
   }

@@ -31,6 +31,8 @@ inline constexpr std::int32_t kSmallSlope = 1 << 20, kDecidedByC = 1 << 30;
 // How many edges of the triangles were tested, those with the whole pixel inside left out.
 struct EdgesTested {
   std::uint64_t narrow = 0, wide = 0;  // with 32 and with 64 bits
+
+  void operator+=(const EdgesTested& more) { narrow += more.narrow, wide += more.wide; }
 };
 
 // masks[i] = the positions that in[i] covers, by the top-left rule. Lanes are across positions.

@@ -2,7 +2,7 @@
 
 // Edge k of the triangle.
 template <class Int>
-EdgeInPixel<Int> edge_in_pixel(const TriangleInPixelOf<Int>& triangle, int k) {
+inline EdgeInPixel<Int> edge_in_pixel(const TriangleInPixelOf<Int>& triangle, int k) {
   const int next = (k + 1) % 3;
   const Int a = triangle.y[k] - triangle.y[next], b = triangle.x[next] - triangle.x[k];
   return {a, b, Int(0) - (a * triangle.x[k] + b * triangle.y[k])};

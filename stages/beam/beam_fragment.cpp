@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "stages/beam/beam_fragment_cost.h"
 #include "stages/beam/specks.h"
@@ -68,72 +69,86 @@ TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directio
 
 bool is_computed(const Pair& pair, const BeamFragmentOptions& options) { return !pair.full || options.clipped_depth; }
 
-// What the kernels read: one item per computed pair, in the order of the pairs.
-struct KernelInput {
-  std::vector<TriangleInPixel> triangles;
-  std::vector<DepthRangeInput<float>> ranges;  // with clipped_depth
-  std::vector<TableTriangle> lookups;          // for MaskSource::table
-  std::vector<CellEdges> cells;                // for MaskSource::exact
-  std::uint64_t prepared = 0;                  // triangles whose edges were prepared for masks
+// The edges of one triangle after the other, prepared for masks.
+class PreparedEdges {
+ public:
+  explicit PreparedEdges(MaskSource mask) : mask_(mask) {}
+
+  bool is_needed() const { return mask_ == MaskSource::table || mask_ == MaskSource::exact; }
+
+  void prepare(const SetupTriangle& triangle) {
+    if (last_ == &triangle) return;
+    for (int k = 0; k < 3; ++k) {
+      edges_[k] = edge_of(triangle, k);
+      if (mask_ == MaskSource::table) directions_[k] = edge_direction(edges_[k]);
+    }
+    last_ = &triangle;
+    ++prepared_;
+  }
+
+  TableTriangle lookup(const Pair& pair) const { return table_edges(edges_, directions_, pair.x, pair.y); }
+  CellEdges cell(const Pair& pair) const { return exact_edges(edges_, pair.x, pair.y); }
+  std::uint64_t prepared() const { return prepared_; }
+
+ private:
+  MaskSource mask_;
+  const SetupTriangle* last_ = nullptr;
+  Edge edges_[3] = {};
+  EdgeDirection directions_[3] = {};
+  std::uint64_t prepared_ = 0;
 };
 
-KernelInput kernel_input(const SetupTriangles& triangles, const std::vector<Pair>& in,
-                         const BeamFragmentOptions& options) {
-  KernelInput kernels;
-  Edge edges[3] = {};
-  EdgeDirection directions[3] = {};
-  const SetupTriangle* last = nullptr;
-  kernels.triangles.reserve(in.size());
+// As many pairs go through the kernels together.
+constexpr std::size_t kBatch = 64;
+
+// What the kernels read: one item per computed pair, in the order of the pairs.
+struct KernelInput {
+  std::size_t count = 0;
+  TriangleInPixel triangles[kBatch];
+  DepthRangeInput<float> ranges[kBatch];  // with clipped_depth
+  TableTriangle lookups[kBatch];          // for MaskSource::table
+  CellEdges cells[kBatch];                // for MaskSource::exact
+};
+
+void set_input(const SetupTriangles& triangles, std::span<const Pair> in, const BeamFragmentOptions& options,
+               PreparedEdges& edges, KernelInput& kernels) {
+  std::size_t count = 0;
   for (const Pair& pair : in) {
     if (!is_computed(pair, options)) continue;
     const SetupTriangle& triangle = triangles.triangles[pair.triangle];
-    kernels.triangles.push_back(seen_from(triangle, pair));
+    const std::size_t i = count++;
+    kernels.triangles[i] = seen_from(triangle, pair);
     if (options.clipped_depth)
-      kernels.ranges.push_back(
-          depth_range_input(triangle, kernels.triangles.back(), pixel_plane(triangle, pair.x, pair.y)));
-    if (options.mask != MaskSource::table && options.mask != MaskSource::exact) continue;
-    for (int k = 0; k < 3 && last != &triangle; ++k) {
-      edges[k] = edge_of(triangle, k);
-      if (options.mask == MaskSource::table) directions[k] = edge_direction(edges[k]);
-    }
-    kernels.prepared += last != &triangle;
-    last = &triangle;
+      kernels.ranges[i] = depth_range_input(triangle, kernels.triangles[i], pixel_plane(triangle, pair.x, pair.y));
+    if (!edges.is_needed()) continue;
+    edges.prepare(triangle);
     if (options.mask == MaskSource::table) {
-      kernels.lookups.push_back(table_edges(edges, directions, pair.x, pair.y));
+      kernels.lookups[i] = edges.lookup(pair);
     } else {
-      kernels.cells.push_back(exact_edges(edges, pair.x, pair.y));
+      kernels.cells[i] = edges.cell(pair);
     }
   }
-  return kernels;
+  kernels.count = count;
 }
 
 // What the kernels compute, in the same order.
 struct KernelOutput {
-  std::vector<Coverage<float>> coverage;
-  std::vector<WideMask> masks;
-  std::vector<DepthRange<float>> depth;  // with clipped_depth
-  EdgesTested edges;                     // for MaskSource::grid
+  Coverage<float> coverage[kBatch];
+  DepthRange<float> depth[kBatch];  // with clipped_depth
+  WideMask masks[kBatch];
 };
 
-KernelOutput run_kernels(const KernelInput& in, const BeamFragmentOptions& options) {
-  const std::size_t count = in.triangles.size();
-  KernelOutput out{std::vector<Coverage<float>>(count),
-                   std::vector<WideMask>(count),
-                   std::vector<DepthRange<float>>(in.ranges.size()),
-                   {}};
-  coverage(in.triangles.data(), count, out.coverage.data());
-  depth_range(in.ranges.data(), in.ranges.size(), out.depth.data());
-  if (options.mask == MaskSource::grid)
-    out.edges = position_masks(in.triangles.data(), count, *options.grid, out.masks.data());
-  std::vector<std::uint32_t> words(count);
+EdgesTested run_kernels(const KernelInput& in, const BeamFragmentOptions& options, KernelOutput& out) {
+  coverage(in.triangles, in.count, out.coverage);
+  if (options.clipped_depth) depth_range(in.ranges, in.count, out.depth);
+  if (options.mask == MaskSource::grid) return position_masks(in.triangles, in.count, *options.grid, out.masks);
+  std::uint32_t words[kBatch] = {};
   for (std::size_t word = 0; word < options.positions.size(); ++word) {
-    if (options.mask == MaskSource::table)
-      table_masks(in.lookups.data(), in.lookups.size(), *options.table, words.data());
-    if (options.mask == MaskSource::exact)
-      sample_masks(in.cells.data(), in.cells.size(), options.positions[word], words.data());
-    for (std::size_t i = 0; i < count; ++i) out.masks[i].words[word] = words[i];
+    if (options.mask == MaskSource::table) table_masks(in.lookups, in.count, *options.table, words);
+    if (options.mask == MaskSource::exact) sample_masks(in.cells, in.count, options.positions[word], words);
+    for (std::size_t i = 0; i < in.count; ++i) out.masks[i].words[word] = words[i];
   }
-  return out;
+  return {};
 }
 
 WideMask whole_mask(const BeamFragmentOptions& options) {
@@ -178,42 +193,47 @@ void locate(const BeamFragmentOptions& options, Fragment& speck, BeamFragmentWor
 
 void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in, const Tile& tile,
                    const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out) {
-  const KernelInput kernels = kernel_input(triangles, in, options);
-  const KernelOutput computed = run_kernels(kernels, options);
   const WideMask whole = whole_mask(options);
   const std::size_t before = out.size();
+  PreparedEdges edges(options.mask);
   BeamFragmentWork work;
-  std::size_t next = 0;
+  KernelInput kernels;
+  KernelOutput computed;
   out.reserve(before + in.size());
-  for (const Pair& pair : in) {
-    const std::size_t i = next;
-    next += is_computed(pair, options);
-    work.partial += !pair.full;
-    if (!pair.full && computed.coverage[i].alpha <= kZeroArea) continue;
-    Fragment& fragment = out.emplace_back();  // filled in place: copying it would wait for all of its parts
-    start_fragment(pair, triangles.triangles[pair.triangle], tile, fragment);
-    if (pair.full) {
-      fragment.alpha = 1.0f, fragment.centroid_u = fragment.centroid_v = 0.5f;
-      fragment.mask = whole;
-    } else {
-      const Coverage<float>& c = computed.coverage[i];
-      fragment.alpha = c.alpha, fragment.centroid_u = c.centroid_u, fragment.centroid_v = c.centroid_v;
-      fragment.mask = computed.masks[i];
+  for (std::size_t first = 0; first < in.size(); first += kBatch) {
+    const std::span batch = std::span(in).subspan(first, std::min(kBatch, in.size() - first));
+    set_input(triangles, batch, options, edges, kernels);
+    work.edges += run_kernels(kernels, options, computed);
+    work.computed += kernels.count;
+    std::size_t next = 0;
+    for (const Pair& pair : batch) {
+      const std::size_t i = next;
+      next += is_computed(pair, options);
+      work.partial += !pair.full;
+      if (!pair.full && computed.coverage[i].alpha <= kZeroArea) continue;
+      Fragment& fragment = out.emplace_back();  // filled in place: copying it would wait for all of its parts
+      start_fragment(pair, triangles.triangles[pair.triangle], tile, fragment);
+      if (pair.full) {
+        fragment.alpha = 1.0f, fragment.centroid_u = fragment.centroid_v = 0.5f;
+        fragment.mask = whole;
+      } else {
+        const Coverage<float>& c = computed.coverage[i];
+        fragment.alpha = c.alpha, fragment.centroid_u = c.centroid_u, fragment.centroid_v = c.centroid_v;
+        fragment.mask = computed.masks[i];
+      }
+      if (options.clipped_depth) fragment.z_min = computed.depth[i].z_min, fragment.z_max = computed.depth[i].z_max;
+      fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
+      if (options.clipped_depth || fragment.tiny) {
+        fragment.centroid_z = depth_at_centroid(fragment);
+        ++work.centroid_depths;
+      }
+      if (fragment.tiny) locate(options, fragment, work);
+      fragment.whole = pair.full || (fragment.alpha == 1.0f && fragment.mask == whole);
+      work.whole += fragment.whole;
     }
-    if (options.clipped_depth) fragment.z_min = computed.depth[i].z_min, fragment.z_max = computed.depth[i].z_max;
-    fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
-    if (options.clipped_depth || fragment.tiny) {
-      fragment.centroid_z = depth_at_centroid(fragment);
-      ++work.centroid_depths;
-    }
-    if (fragment.tiny) locate(options, fragment, work);
-    fragment.whole = pair.full || (fragment.alpha == 1.0f && fragment.mask == whole);
-    work.whole += fragment.whole;
   }
   work.pairs = in.size();
-  work.computed = computed.coverage.size();
-  work.triangles = kernels.prepared;
-  work.edges = computed.edges;
+  work.triangles = edges.prepared();
   work.fragments = out.size() - before;
   charge(work, options, counters);
 }

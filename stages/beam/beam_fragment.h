@@ -52,12 +52,9 @@ inline BeamFragmentOptions grid_options(const PositionGrid& grid, std::uint32_t 
   return options;
 }
 
-// Working memory of beam_fragment per pair, with the pair and its fragment. Those two count twice, because a growing
-// vector copies its contents from one place to another.
-inline constexpr std::size_t kPairWorkingBytes =
-    2 * (sizeof(Pair) + sizeof(Fragment)) + sizeof(TriangleInPixel) + sizeof(Coverage<float>) +
-    sizeof(DepthRangeInput<float>) + sizeof(DepthRange<float>) + std::max(sizeof(TableTriangle), sizeof(CellEdges)) +
-    sizeof(WideMask) + sizeof(std::uint32_t);
+// Working memory per pair, with its fragment. Both count twice, because a growing vector copies its contents from one
+// place to another.
+inline constexpr std::size_t kPairWorkingBytes = 2 * (sizeof(Pair) + sizeof(Fragment));
 
 // An area up to this, in pixels, is a rounding error of an area of 0.
 inline constexpr float kZeroArea = 5e-7f;

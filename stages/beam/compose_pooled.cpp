@@ -217,21 +217,27 @@ class PooledComposer {
 
   // An owner that has no position left is forgotten.
   void take_away(const Mask& claimed, std::uint32_t contested) {
-    std::size_t kept = 0;
     work.takes += static_cast<std::uint64_t>(std::popcount(contested));
-    for (std::size_t k = 0; k < at_.shape.owners; ++k) {
-      if (contested >> k & 1) {
-        Mask left = at_.owned(k);
-        if (!take_from(left, claimed)) continue;
-        at_.own(k, left);
-      }
-      keep(k, kept++);
+    std::uint32_t gone = 0;
+    for (std::uint32_t left = contested; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      Mask positions = at_.owned(k);
+      gone |= std::uint32_t{!take_from(positions, claimed)} << k;
+      at_.own(k, positions);
     }
+    forget(gone);
+  }
+
+  // Bit k: owner k.
+  void forget(std::uint32_t gone) {
+    if (gone == 0) return;
+    auto kept = static_cast<std::size_t>(std::countr_zero(gone));
+    for (std::size_t k = kept + 1; k < at_.shape.owners; ++k)
+      if (!(gone >> k & 1)) keep(k, kept++);
     at_.shape.owners = static_cast<std::uint8_t>(kept);
   }
 
   void keep(std::size_t from, std::size_t to) {
-    if (from == to) return;
     at_.record.move(from, to);
     at_.own(to, at_.owned(from));
     work.bytes_read += sizeof(OwnerSlot), work.bytes_written += sizeof(OwnerSlot);
@@ -244,10 +250,11 @@ class PooledComposer {
     return at_.record.plane(k);
   }
   // `number`: in the list.
-  void fetch_plane(std::uint32_t number, bool has_vertices = false) {
+  HWY_INLINE void fetch_plane(std::uint32_t number, bool has_vertices = false) {
     ++work.planes;
     work.vertices_bounded += has_vertices;
-    if (bin_.lists_fetches) result_.fetched.push_back({bin_.list[number], has_vertices});
+    if (bin_.lists_fetches) [[unlikely]]
+      result_.fetched.push_back({bin_.list[number], has_vertices});
   }
 
   // The positions that the fragment takes from owners. `contested`: bit k: owner k has positions in its mask.
@@ -273,9 +280,13 @@ class PooledComposer {
 
   // Bit k: owner k.
   void charge_contests(std::uint32_t contested) {
-    work.contests += static_cast<std::uint64_t>(std::popcount(contested));
+    const auto count = static_cast<std::uint64_t>(std::popcount(contested));
+    work.contests += count;
+    work.planes += count;
+    work.bytes_read += count * sizeof(OwnerSlot);
+    if (!bin_.lists_fetches) return;
     for (std::uint32_t left = contested; left != 0; left &= left - 1)
-      plane_of(static_cast<std::size_t>(std::countr_zero(left)));
+      result_.fetched.push_back({bin_.list[at_.record.slots[std::countr_zero(left)].triangle()]});
   }
 
   // The contested positions that the fragment takes from owner k. At equal depth the triangle that comes first in the
@@ -287,16 +298,16 @@ class PooledComposer {
     const DepthPlane<float>&one = is_earlier ? owner : fragment.plane, &other = is_earlier ? fragment.plane : owner;
     const WideMask where = contested.wide();
     WideMask nearer;
-    nearer_positions(one, other, bin_.positions.patterns.data(), Words, nearer.words.data(), where.words.data());
+    nearer_positions(one, other, bin_.positions.offsets.data(), Words, nearer.words.data(), where.words.data());
     return is_earlier ? without(contested, Mask(nearer)) : Mask(nearer);
   }
 
   // A pixel without empty positions hides what lies behind all of its owners.
   void close(ClosedDepth& closed) {
+    work.bounds_found += at_.shape.owners;
+    work.bytes_read += at_.shape.owners * sizeof(OwnerSlot);
     float farthest = kInFront;
     for (std::size_t k = 0; k < at_.shape.owners; ++k) {
-      ++work.bounds_found;
-      work.bytes_read += sizeof(OwnerSlot);
       fetch_plane(at_.record.slots[k].triangle(), !at_.record.slots[k].is_merged());
       farthest = std::max(farthest, at_.record.farthest(k));
     }
@@ -371,7 +382,7 @@ class PooledComposer {
   float farthest_of(std::size_t k) {
     ++work.farthest_found;
     const WideMask positions = at_.owned(k).wide();
-    return farthest_depth(plane_of(k), bin_.positions.patterns.data(), Words, positions.words.data());
+    return farthest_depth(plane_of(k), bin_.positions.offsets.data(), Words, positions.words.data());
   }
 
   // All but the plane and the mean.
@@ -406,10 +417,7 @@ class PooledComposer {
     at_.shape.has_final = !at_.final.none();
     std::uint32_t gone = 0;
     for (std::size_t i = 0; i < count; ++i) gone |= 1u << owners_[i].index;
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < at_.shape.owners; ++k)
-      if (!(gone >> k & 1)) keep(k, kept++);
-    at_.shape.owners = static_cast<std::uint8_t>(kept);
+    forget(gone);
   }
 
   // Sets order_. Equal ones keep their order.
@@ -574,9 +582,9 @@ class PooledComposer {
     if (at_.area <= 0 && count == 0) return {0.0f, glm::vec3(0.0f)};
     ++work.limited;
     work.bytes_read += sizeof(PixelSums);
-    Estimate<float> analytic{at_.area, {}}, counted{count / kPositions, {}};
-    for (std::size_t c = 0; c < 3; ++c)
-      analytic.color[c] = at_.record.head->sums.colors[c], counted.color[c] = at_.record.head->sums.colors[c + 3];
+    const std::array<float, ColorSums::kCount> sums = at_.record.head->sums.colors.values();
+    const Estimate<float> analytic{at_.area, {sums[0], sums[1], sums[2]}},
+        counted{count / kPositions, {sums[3], sums[4], sums[5]}};
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
     if (observer_) observer_->finishes(color_of(analytic), color_of(counted), color_of(result));
     return color_of(result);

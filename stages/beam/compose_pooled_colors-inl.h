@@ -47,7 +47,7 @@ class OwnerColors {
       const PixelWord& word = pixels.words[pixel];
       if (word.kind == PixelKind::covered) add(pixel, word.number, 0.5f, 0.5f);
       if (word.kind != PixelKind::open) continue;
-      const RecordView<Words> record = pixels.records.view(word.record_size, word.number);
+      const RecordView<Words> record = RecordStore<Words>::view(word.record_size, word.record);
       for (std::size_t k = 0; k < word.shape.owners; ++k) {
         const OwnerSlot& slot = record.slots[k];
         if (slot.is_merged()) {

@@ -47,10 +47,10 @@ class PixelAtHand {
     word_ = &pixels_.words[pixel];
   }
   const PixelWord& word() const { return *word_; }
-  void look_at_record() {
+  HWY_INLINE void look_at_record() {
     shape = word_->shape;
     area = word_->area;
-    record = pixels_.records.view(word_->record_size, word_->number);
+    record = RecordStore<Words>::view(word_->record_size, word_->record);
   }
   const CoverDepth& cover_depth() const { return pixels_.covers[index]; }
 
@@ -79,7 +79,7 @@ class PixelAtHand {
     }
     area = {};
     shape = {};
-    record = pixels_.records.view(0, spare_);
+    record = RecordStore<Words>::view(0, spare_);
     if (word_->kind == PixelKind::covered) {
       OwnerSlot slot;
       slot.set(word_->number, 0.0f, kPositions, 0.5f, 0.5f);
@@ -97,17 +97,17 @@ class PixelAtHand {
     if (owners <= RecordStore<Words>::owners_in(0) || word_->kind != PixelKind::open) return;
     const std::uint8_t size = RecordStore<Words>::size_for(owners);
     if (size <= word_->record_size) return;
-    const std::uint32_t larger = pixels_.records.take(size);
-    const RecordView<Words> view = pixels_.records.view(size, larger);
+    void* const larger = pixels_.records.take(size);
+    const RecordView<Words> view = RecordStore<Words>::view(size, larger);
     for (std::size_t k = 0; k < shape.owners; ++k) {
       view.set(k, record.slots[k], record.plane(k), record.farthest(k));
       owned(k).store(view.owned(k));
     }
     view.head->sums = record.head->sums;
     view.head->nearest_speck = record.head->nearest_speck;
-    pixels_.records.give_back(word_->record_size, word_->number);
+    pixels_.records.give_back(word_->record_size, word_->record);
     word_->record_size = size;
-    word_->number = larger;
+    word_->record = larger;
     record = view;
   }
 
@@ -160,7 +160,7 @@ class PixelAtHand {
       new_slots += has_cover;
       word_->kind = PixelKind::open;
       word_->record_size = 0;
-      word_->number = spare_;
+      word_->record = spare_;
       spare_ = pixels_.records.take(0);
     }
     ++work_.joins[shape.states()];
@@ -172,8 +172,6 @@ class PixelAtHand {
   // The same where positions have not changed.
   HWY_INLINE void store_sums() {
     resize(shape.chunks(Words));
-    float& most = result_.maps.record_bytes[index];
-    most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + pixels_.pool.link_bytes())));
     word_->shape = shape;
     word_->area = area;
     work_.bytes_written += kPixelWordBytes;
@@ -181,7 +179,7 @@ class PixelAtHand {
   }
 
   // Every access follows the links of the record's chunks.
-  void count_read(std::size_t bytes) {
+  HWY_INLINE void count_read(std::size_t bytes) {
     work_.bytes_read += bytes + word_->chunks.count * pixels_.pool.link_bytes();
     count_visit(false);
   }
@@ -191,7 +189,7 @@ class PixelAtHand {
 
   void release() {
     if (word_->kind != PixelKind::open) return;
-    pixels_.records.give_back(word_->record_size, word_->number);
+    pixels_.records.give_back(word_->record_size, word_->record);
     resize(0);
     count_visit(true);
   }
@@ -208,6 +206,8 @@ class PixelAtHand {
     pixels_.pool.resize(chunks, count);
     if (before.count > 0) work_.bytes_written += pixels_.pool.link_bytes();
     if (count > before.count) {
+      float& most = result_.maps.record_bytes[index];
+      most = std::max(most, static_cast<float>(count * (kChunkBytes + pixels_.pool.link_bytes())));
       work_.bytes_read += (count - before.count) * pixels_.pool.link_bytes();
       if (chunks.in_memory > before.in_memory) count_spills({.reads = chunks.in_memory - before.in_memory + 0u});
     } else if (chunks.in_memory < before.in_memory) {
@@ -218,10 +218,11 @@ class PixelAtHand {
     }
   }
 
-  void count_visit(bool is_write) {
+  HWY_INLINE void count_visit(bool is_write) {
     const ChunkPool::Chunks& chunks = word_->chunks;
-    if (result_.lists_visits) result_.visits.push_back({number, index, chunks.count, is_write});
-    if (chunks.in_memory > 0)
+    if (result_.lists_visits) [[unlikely]]
+      result_.visits.push_back({number, index, chunks.count, is_write});
+    if (chunks.in_memory > 0) [[unlikely]]
       count_spills(is_write ? ChunkRequests{.writes = chunks.in_memory} : ChunkRequests{.reads = chunks.in_memory});
   }
   void count_spills(const ChunkRequests& requests) {
@@ -233,7 +234,7 @@ class PixelAtHand {
   PooledResult& result_;
   PooledWork& work_;
   PixelWord* word_ = nullptr;
-  std::uint32_t spare_;  // a record for a pixel that has none yet
+  void* spare_;  // a record for a pixel that has none yet
 };
 
 }  // namespace

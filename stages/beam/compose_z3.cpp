@@ -38,7 +38,7 @@ Layer merged(const Layer& a, const Layer& b) {
 template <std::size_t Words, std::size_t Layers>
 class PixelLayers {
  public:
-  explicit PixelLayers(const PositionSet& positions) : patterns_(positions.patterns) {}
+  explicit PixelLayers(const PositionSet& positions) : offsets_(positions.offsets) {}
 
   // `observer` may be null.
   void add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel, PixelObserver* observer) {
@@ -51,7 +51,7 @@ class PixelLayers {
       const WideMask contested = layer.positions & fragment.mask;
       if (!contested.none()) {
         WideMask nearer;
-        nearer_positions(arriving.plane(), layer.plane(), patterns_.data(), Words, nearer.words.data());
+        nearer_positions(arriving.plane(), layer.plane(), offsets_.data(), Words, nearer.words.data());
         ++work.planes_compared;
         arriving.positions = without(arriving.positions, without(contested, nearer));
         layer.positions = without(layer.positions, contested & nearer);
@@ -92,7 +92,7 @@ class PixelLayers {
     std::swap(layers[second], layers.back());
   }
 
-  const std::vector<SamplePattern>& patterns_;
+  const std::vector<PositionOffsets>& offsets_;
 };
 
 }  // namespace

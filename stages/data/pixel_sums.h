@@ -45,11 +45,14 @@ class ColorSums {
   static constexpr std::size_t kCount = 6;
   using Words = std::array<std::uint32_t, kCount>;  // of 16 bits
 
-  float operator[](std::size_t i) const {
+  std::array<float, kCount> values() const {
     const Words words = load();
     std::uint32_t power = 0;
-    for (std::size_t k = 0; k < kCount; ++k) power |= words[k] >> 15 << k;
-    return static_cast<float>(words[i] & kLargest) * unit(static_cast<int>(power));
+    for (std::size_t i = 0; i < kCount; ++i) power |= words[i] >> 15 << i;
+    std::array<float, kCount> values;
+    for (std::size_t i = 0; i < kCount; ++i)
+      values[i] = static_cast<float>(words[i] & kLargest) * unit(static_cast<int>(power));
+    return values;
   }
 
   // `addends` are not negative. `threshold`: as in FixedSum.

@@ -94,6 +94,7 @@ class ChunkPool {
   static ChunkPool of_frame(std::uint32_t guaranteed) {
     ChunkPool pool(std::size_t{1} << 40);
     pool.guaranteed_ = guaranteed;
+    pool.link_bytes_ = kFrameChunkLinkBytes;
     return pool;
   }
   void close() { is_closed_ = true; }
@@ -137,14 +138,14 @@ class ChunkPool {
   std::size_t used() const { return used_on_chip_ + in_memory_; }
   std::size_t beyond_guaranteed() const { return beyond_guaranteed_; }  // chunks of all records
   std::size_t peak() const { return peak_; }
-  std::uint32_t link_bytes() const { return guaranteed_ > 0 ? kFrameChunkLinkBytes : kChunkLinkBytes; }
+  std::uint32_t link_bytes() const { return link_bytes_; }
   std::size_t peak_in_memory() const { return peak_in_memory_; }
 
  private:
   std::size_t beyond(std::uint32_t count) const { return count - std::min(count, guaranteed_); }
 
   std::size_t on_chip_, used_on_chip_ = 0, in_memory_ = 0;
-  std::uint32_t guaranteed_ = 0;
+  std::uint32_t guaranteed_ = 0, link_bytes_ = kChunkLinkBytes;
   std::size_t beyond_guaranteed_ = 0;
   bool is_closed_ = false;
   std::size_t taken_since_collection_ = 0, peak_ = 0, peak_in_memory_ = 0;
@@ -180,10 +181,11 @@ struct PixelWord {
   PixelKind kind = PixelKind::untouched;
   RecordShape shape;             // open
   FixedSum area;                 // open: of what is final, by analytic area
-  std::uint32_t number = 0;      // covered: of the triangle in the bin's list; open: of the record
+  std::uint32_t number = 0;      // covered: of the triangle in the bin's list
   ChunkPool::Chunks chunks;      // open
+  void* record = nullptr;        // open: this program's (RecordStore)
+  std::uint8_t record_size = 0;  // open
   HalfBits color[3];             // finished; linear RGB
-  std::uint8_t record_size = 0;  // open: of this program's records
 };
 
 // What each record has.
@@ -246,42 +248,44 @@ class RecordStore {
   static constexpr std::size_t owners_in(std::uint8_t size) { return std::size_t{8} << size; }
   static constexpr std::uint8_t size_for(std::size_t owners) { return owners <= 8 ? 0 : owners <= 16 ? 1 : 2; }
 
-  std::uint32_t take(std::uint8_t size) {
-    return size == 0 ? small_.take() : size == 1 ? medium_.take() : large_.take();
-  }
-  void give_back(std::uint8_t size, std::uint32_t record) {
+  // Of a size.
+  void* take(std::uint8_t size) { return size == 0 ? small_.take() : size == 1 ? medium_.take() : large_.take(); }
+  void give_back(std::uint8_t size, void* record) {
     (size == 0 ? small_.free : size == 1 ? medium_.free : large_.free).push_back(record);
   }
-  [[gnu::always_inline]] RecordView<Words> view(std::uint8_t size, std::uint32_t record) {
-    return size == 0 ? small_.view(record) : size == 1 ? medium_.view(record) : large_.view(record);
+  [[gnu::always_inline]] static RecordView<Words> view(std::uint8_t size, void* record) {
+    return size == 0   ? view_of<owners_in(0)>(record)
+           : size == 1 ? view_of<owners_in(1)>(record)
+                       : view_of<owners_in(2)>(record);
   }
 
  private:
   template <std::size_t Owners>
-  struct Slab {
-    static constexpr std::uint32_t kBlock = 64;
-    std::vector<std::unique_ptr<Record<Words, Owners>[]>> blocks;
-    std::vector<std::uint32_t> free;
-    std::uint32_t count = 0;
+  [[gnu::always_inline]] static RecordView<Words> view_of(void* record) {
+    return RecordView<Words>::of(*static_cast<Record<Words, Owners>*>(record));
+  }
 
-    [[gnu::always_inline]] RecordView<Words> view(std::uint32_t record) {
-      return RecordView<Words>::of(blocks[record / kBlock][record % kBlock]);
-    }
-    std::uint32_t take() {
-      if (!free.empty()) {
-        const std::uint32_t record = free.back();
-        free.pop_back();
-        return record;
+  template <std::size_t Owners>
+  struct Slab {
+    static constexpr std::size_t kBlock = 64;
+    std::vector<std::unique_ptr<Record<Words, Owners>[]>> blocks;
+    std::vector<void*> free;
+
+    void* take() {
+      if (free.empty()) {
+        Record<Words, Owners>* const block =
+            blocks.emplace_back(std::make_unique_for_overwrite<Record<Words, Owners>[]>(kBlock)).get();
+        for (std::size_t i = kBlock; i > 0; --i) free.push_back(block + i - 1);
       }
-      if (count == blocks.size() * kBlock)
-        blocks.push_back(std::make_unique_for_overwrite<Record<Words, Owners>[]>(kBlock));
-      return count++;
+      void* const record = free.back();
+      free.pop_back();
+      return record;
     }
   };
 
-  Slab<8> small_;
-  Slab<16> medium_;
-  Slab<32> large_;
+  Slab<owners_in(0)> small_;
+  Slab<owners_in(1)> medium_;
+  Slab<owners_in(2)> large_;
 };
 
 // What a pixel that one triangle covers is compared by. The modelled machine computes it again.

@@ -9,7 +9,7 @@
 
 namespace beampipe {
 
-PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(words)) {
+PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(words)), offsets(offsets_of(patterns)) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(count()); ++i) {
     const SamplePattern& pattern = patterns[i / kMaxMaskSamples];
     const auto part = [&](int parts) {

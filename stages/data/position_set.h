@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "simd/plane_order.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
 #include "simd/wide_mask.h"
@@ -15,6 +16,7 @@ namespace beampipe {
 struct PositionSet {
   static constexpr int kPlaces = 64;  // places per axis in the table `nearest`
   std::vector<SamplePattern> patterns;
+  std::vector<PositionOffsets> offsets;              // of the patterns
   std::vector<std::array<std::uint8_t, 3>> nearest;  // kPlaces x kPlaces, row by row
   // The positions in each quarter and in each sixteenth of the pixel, row by row.
   std::array<WideMask, 4> quarters;

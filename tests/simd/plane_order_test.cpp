@@ -51,7 +51,7 @@ TEST(PlaneOrder, EqualsIntegerArithmetic) {
       IntegerPlane other{random.integer(-1024, 0), slope(), slope()};
       if (random.one_in(3)) other = {plane.z, plane.dzdv, plane.dzdu};  // they meet along a diagonal
       std::uint32_t masks[8];
-      nearer_positions(plane.plane(), other.plane(), patterns.data(), patterns.size(), masks);
+      nearer_positions(plane.plane(), other.plane(), offsets_of(patterns).data(), patterns.size(), masks);
       for (std::size_t p = 0; p < 256; ++p) {
         const std::int64_t depth = plane.at(patterns[p / 32], p % 32), of_other = other.at(patterns[p / 32], p % 32);
         ASSERT_EQ(masks[p / 32] >> (p % 32) & 1, depth < of_other) << "draw " << draw << ", position " << p;
@@ -68,7 +68,7 @@ TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
   for_positions({32, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
     for (std::size_t i = 1; i < planes.size(); ++i) {
       std::uint32_t masks[8];
-      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
+      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), masks);
       for (std::size_t w = 0; w < patterns.size(); ++w)
         for (std::size_t s = 0; s < 32; ++s)
           ASSERT_EQ(masks[w] >> s & 1,
@@ -108,7 +108,7 @@ TEST(PlaneOrder, FarthestOnEveryTargetEqualsTheFormulaOnFloat) {
       for (std::size_t p = 0; p < 32 * patterns.size(); ++p)
         expected = farthest_formula(planes[i], position_u(patterns[p / 32], p % 32),
                                     position_v(patterns[p / 32], p % 32), has(mask, p), expected);
-      ASSERT_EQ(farthest_depth(planes[i], patterns.data(), patterns.size(), mask.data()), expected) << i;
+      ASSERT_EQ(farthest_depth(planes[i], offsets_of(patterns).data(), patterns.size(), mask.data()), expected) << i;
     }
   });
 }
@@ -131,7 +131,7 @@ TEST(PlaneOrder, FarthestEqualsIntegerArithmetic) {
       }
       // Depths of these planes may be in front of everything that is visible, but an owner's are not.
       const float expected = any ? std::max(kInFront, static_cast<float>(farthest) / (1 << 18)) : kInFront;
-      ASSERT_EQ(farthest_depth(plane.plane(), patterns.data(), patterns.size(), mask.data()), expected);
+      ASSERT_EQ(farthest_depth(plane.plane(), offsets_of(patterns).data(), patterns.size(), mask.data()), expected);
     }
   });
 }
@@ -167,8 +167,8 @@ TEST(PlaneOrder, NearerLooksOnlyAtPositionsOfTheMask) {
       const std::array<std::uint32_t, 8>& where = masks[i % masks.size()];
       std::uint32_t all[8], some[8];
       std::fill(some, some + 8, ~0u);
-      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), all);
-      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), some, where.data());
+      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), all);
+      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), some, where.data());
       for (std::size_t w = 0; w < patterns.size(); ++w) ASSERT_EQ(some[w], all[w] & where[w]) << i << " word " << w;
     }
   });

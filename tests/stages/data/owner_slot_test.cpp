@@ -150,7 +150,7 @@ TEST(ColorSums, AreRightWhateverTheSizeOfColors) {
       }
       // A unit is at most 2^-13 of the largest sum. Each addend is wrong by a unit at most, and errors cancel.
       for (std::size_t i = 0; i < ColorSums::kCount; ++i)
-        EXPECT_NEAR(sums[i], exact[i], largest * 0x1p-13 * (2 + 3 * std::sqrt(count))) << brightest;
+        EXPECT_NEAR(sums.values()[i], exact[i], largest * 0x1p-13 * (2 + 3 * std::sqrt(count))) << brightest;
     }
   }
 }
@@ -158,13 +158,13 @@ TEST(ColorSums, AreRightWhateverTheSizeOfColors) {
 TEST(ColorSums, HoldABrightColorAfterDarkOnes) {
   ColorSums sums;
   for (int k = 0; k < 100; ++k) sums.add({0.004f, 0.002f, 0.001f, 0.004f, 0.002f, 0.001f}, 0.5f);
-  EXPECT_NEAR(sums[0], 0.4, 0.001);
+  EXPECT_NEAR(sums.values()[0], 0.4, 0.001);
   sums.add({900.0f, 0.0f, 0.0f, 900.0f, 0.0f, 0.0f}, 0.5f);
-  EXPECT_NEAR(sums[0], 900.4, 0.1);
-  EXPECT_NEAR(sums[1], 0.2, 0.1);
+  EXPECT_NEAR(sums.values()[0], 900.4, 0.1);
+  EXPECT_NEAR(sums.values()[1], 0.2, 0.1);
   sums.add({1e38f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.5f);  // more than a sum can hold
-  EXPECT_GT(sums[0], 1e11);
-  EXPECT_TRUE(std::isfinite(sums[0]));
+  EXPECT_GT(sums.values()[0], 1e11);
+  EXPECT_TRUE(std::isfinite(sums.values()[0]));
 }
 
 // Every position is in the state that it was put into last, and words beyond the pixel's are 0.

@@ -90,7 +90,7 @@ TEST(ChunkPool, AFramesPoolHasRoomUntilItIsClosed) {
 // Records of all sizes keep their contents while others come and go.
 TEST(RecordStore, RecordsStayWhereTheyAre) {
   RecordStore<8> store;
-  std::vector<std::pair<std::uint8_t, std::uint32_t>> records;
+  std::vector<std::pair<std::uint8_t, void*>> records;
   const auto last_of = [&](std::size_t i) -> std::uint32_t& {
     const auto [size, record] = records[i];
     return store.view(size, record).owned(RecordStore<8>::owners_in(size) - 1)[7];
