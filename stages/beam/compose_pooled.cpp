@@ -171,7 +171,11 @@ class PooledComposer {
 
   void share(const Fragment& fragment, const Mask& mask, std::uint32_t number, ClosedDepth& closed) {
     std::uint32_t contested = 0;  // bit k: owner k
-    for (std::size_t k = 0; k < at_.shape.owners; ++k) contested |= std::uint32_t{is_met(at_.owned(k), mask)} << k;
+    constexpr std::size_t kTogether = 4;  // read beyond the last owner, so that the number of rounds varies less
+    for (std::size_t first = 0; first < at_.shape.owners; first += kTogether)
+      for (std::size_t k = first; k < first + kTogether; ++k)
+        contested |= std::uint32_t{is_met(at_.owned(k), mask)} << k;
+    contested &= (1u << at_.shape.owners) - 1;
     const bool met_empty = at_.shape.has_empty && is_met(at_.empty, mask);
     work.masks_tested += std::size_t{at_.shape.owners} + at_.shape.has_empty;
     ++work.masks;
