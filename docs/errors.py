@@ -35,7 +35,10 @@ def main(folders):
     if not folders:
         sys.exit(__doc__.strip())
     for folder in folders:
-        report = json.loads((pathlib.Path(folder) / "report.json").read_text(encoding="utf-8"))
+        path = pathlib.Path(folder) / "report.json"
+        if not path.exists():
+            sys.exit(f"{path}: expected a comparison, found no such file")
+        report = json.loads(path.read_text(encoding="utf-8"))
         print_head("technique", *["what it is"] * has_names, "bytes on chip", "bytes off chip", "RMSE × 1000", "bias × 1000", "EMR")
         for result in report["results"]:
             if result["technique"] == "reference":

@@ -118,10 +118,15 @@ std::string bound_text(const EquivalentMsaa& emr) {
   return emr.is_lower_bound ? "at least" : emr.is_upper_bound ? "at most" : "estimate";
 }
 
-// "color, depth, spilled records"
+// "color, depth, A-buffer, spilled records"
 std::string off_chip_text(const Json& result) {
   std::string names;
-  const auto add = [&](const Json& named) { add_name(names, named.at("name").get<std::string>()); };
+  const auto add = [&](const Json& named) {
+    auto name = named.at("name").get<std::string>();
+    if (name == kABuffer) name = "A-buffer";
+    std::ranges::replace(name, '_', ' ');
+    add_name(names, name);
+  };
   const Json surfaces = result.value("framebuffer", Json::array());
   for (const Json& surface : surfaces.elements()) add(surface);
   for (const Json& frame : result.at("frames").elements()) {
@@ -130,7 +135,6 @@ std::string off_chip_text(const Json& result) {
       for (const std::string_view name : {kABuffer, kTranslucentLayer, kSpilledRecords})
         if (buffer.at("name") == name) add(buffer);
   }
-  std::ranges::replace(names, '_', ' ');
   return names;
 }
 

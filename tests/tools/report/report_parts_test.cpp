@@ -288,7 +288,7 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   text.insert(text.find("\"peak_bytes_per_pixel\""), R"("on_chip_bytes_per_pixel": 2.5, )");
   text.insert(text.find("\"dram_bytes\": 800"),
               R"("bin_pixels": 1024, "buffers": [{"name": "bin_lists", "peak_bytes": 4},
-      {"name": "spilled_records", "peak_bytes": 7}], )");
+      {"name": "a_buffer", "peak_bytes": 9}, {"name": "spilled_records", "peak_bytes": 7}], )");
   text.replace(text.find("\"in_turn\": 3"), 12, R"("in_turn": 3, "busiest": "dram")");
   text.replace(text.find("\"in_turn\": 5"), 12,
                R"("in_turn": 5, "busiest": "shader", "busiest_rate": "core_issue_per_clk")");
@@ -300,7 +300,7 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
   EXPECT_EQ(card.at("on_chip_bytes_per_pixel"), 2.5);
   EXPECT_EQ(card.at("on_chip_bytes"), 2560.0);
   EXPECT_EQ(card.at("bytes_per_pixel"), 49.0);
-  EXPECT_EQ(card.at("off_chip"), "mask, spilled records") << "what the frame has in memory, without its bins";
+  EXPECT_EQ(card.at("off_chip"), "mask, A-buffer, spilled records") << "what the frame has in memory, without its bins";
   EXPECT_EQ(card.at("modelled_ms").at("shaders"),
             (Json{{"at_once", 3.0}, {"on_cores", 0.0}, {"in_turn", 4.0}, {"busiest", "dram, shader: issue"}}));
   EXPECT_EQ(card.at("rmse"), 0.02);
