@@ -10,12 +10,12 @@
 
 namespace beampipe {
 
-// A triangle in a cell.
-struct CellDepth {
+// What a triangle does to the samples of a cell. Bit s of a mask is sample s.
+struct SampleAccess {
   std::uint32_t cell;      // its samples start at cell * pattern.count
-  std::uint32_t mask;      // samples to test
-  std::uint32_t triangle;  // what to store where the test passes
-  CellPlane<float> plane;
+  std::uint32_t triangle;  // what is stored where the test passes
+  std::uint32_t tested;    // samples whose depth is read
+  std::uint32_t passed;    // of them, those that pass
 };
 
 // Arrays of cells * pattern.count samples. Another kSampleSlack samples after them must be readable and writable.
@@ -29,15 +29,15 @@ struct SampleCounts {
   std::uint64_t tested, passed;
 };
 
-// Works in order: an item sees what earlier items stored. passed[i], unless `passed` is null, becomes the mask of the
-// samples of items[i] that passed. Lanes are across samples.
-SampleCounts depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                        const SampleSurface& surface, std::uint32_t* passed = nullptr);
+// Sets what has passed. planes[i]: of items[i]. Works in order: an item sees what earlier items stored. Lanes are
+// across samples.
+SampleCounts depth_test(SampleAccess* items, const CellPlane<float>* planes, std::size_t count,
+                        const SamplePattern& pattern, const SampleSurface& surface);
 
-// For the pass that follows a depth-only pass: masks[i] becomes the samples of items[i].mask whose depth equals the
-// stored one, to the last bit. Reads as far past the end of `depth` as depth_test does. Lanes are across samples.
-SampleCounts depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
-                         std::uint32_t* masks);
+// For the pass that follows a depth-only pass: what passes are the samples whose depth equals the stored one, to the
+// last bit. Reads as far past the end of `depth` as depth_test does. Lanes are across samples.
+SampleCounts depth_equal(SampleAccess* items, const CellPlane<float>* planes, std::size_t count,
+                         const SamplePattern& pattern, const float* depth);
 
 // The scalar twins for one sample or position: does it pass?
 template <class Float>

@@ -1,5 +1,7 @@
 #include "simd/sample_mask.h"
 
+#include <bit>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/sample_mask.cpp"
 #include "hwy/foreach_target.h"
@@ -67,6 +69,55 @@ void sample_masks_kernel(const CellEdges* cells, std::size_t count, const Sample
   }
 }
 
+// Sets the bits of samples s, s + 1, ... in the masks of one triangle's cells.
+template <class D>
+HWY_INLINE void grid_masks(D d, const GridEdges& edges, const GridCell* cells, std::size_t count,
+                           const SamplePattern& pattern, std::size_t s, std::uint32_t* masks) {
+  const hn::Rebind<std::int32_t, D> di;
+  const auto x = hn::PromoteTo(d, hn::Load(di, pattern.x.data() + s));
+  const auto y = hn::PromoteTo(d, hn::Load(di, pattern.y.data() + s));
+  const auto in_cell = [&](int k) {
+    return hn::Add(hn::Mul(hn::Set(d, edges.a[k]), x), hn::Mul(hn::Set(d, edges.b[k]), y));
+  };
+  const auto in_cell0 = in_cell(0), in_cell1 = in_cell(1), in_cell2 = in_cell(2);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double column = cells[i].x, row = cells[i].y;
+    const auto corner = [&](int k) {
+      return hn::Set(d, edges.start[k] + edges.right[k] * column + edges.down[k] * row);
+    };
+    const auto least =
+        hn::Min(hn::Min(hn::Add(in_cell0, corner(0)), hn::Add(in_cell1, corner(1))), hn::Add(in_cell2, corner(2)));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Ge(least, hn::Zero(d)), bits);
+    masks[i] |= std::uint32_t{bits[0]} << s;
+  }
+}
+
+// As many lanes as the pattern has samples are enough.
+template <class D>
+HWY_INLINE std::uint64_t grid_masks(D d, const GridEdges* edges, const GridCell* cells, std::size_t count,
+                                    const SamplePattern& pattern, std::uint32_t* masks) {
+  const auto samples = static_cast<std::size_t>(pattern.count);
+  for (std::size_t i = 0; i < count; ++i) masks[i] = 0;
+  for (std::size_t first = 0, end = 0; first < count; first = end) {
+    while (end < count && cells[end].edges == cells[first].edges) ++end;
+    for (std::size_t s = 0; s < samples; s += hn::Lanes(d))
+      grid_masks(d, edges[cells[first].edges], cells + first, end - first, pattern, s, masks + first);
+  }
+  std::uint64_t covered = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    masks[i] &= ~0u >> (kMaxMaskSamples - pattern.count);
+    covered += static_cast<std::uint64_t>(std::popcount(masks[i]));
+  }
+  return covered;
+}
+
+std::uint64_t grid_masks_kernel(const GridEdges* edges, const GridCell* cells, std::size_t count,
+                                const SamplePattern& pattern, std::uint32_t* masks) {
+  return pattern.count <= 4 ? grid_masks(hn::CappedTag<double, 4>(), edges, cells, count, pattern, masks)
+                            : grid_masks(hn::CappedTag<double, 8>(), edges, cells, count, pattern, masks);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace beampipe
 HWY_AFTER_NAMESPACE();
@@ -76,6 +127,11 @@ namespace beampipe {
 HWY_EXPORT(sample_masks_kernel);
 void sample_masks(const CellEdges* cells, std::size_t count, const SamplePattern& pattern, std::uint32_t* masks) {
   HWY_DYNAMIC_DISPATCH(sample_masks_kernel)(cells, count, pattern, masks);
+}
+HWY_EXPORT(grid_masks_kernel);
+std::uint64_t sample_masks(const GridEdges* edges, const GridCell* cells, std::size_t count,
+                           const SamplePattern& pattern, std::uint32_t* masks) {
+  return HWY_DYNAMIC_DISPATCH(grid_masks_kernel)(edges, cells, count, pattern, masks);
 }
 }  // namespace beampipe
 #endif

@@ -19,6 +19,21 @@ struct CellEdges {
 // Bit s of masks[i]: cells[i] covers sample s of the pattern. Lanes are across samples.
 void sample_masks(const CellEdges* cells, std::size_t count, const SamplePattern& pattern, std::uint32_t* masks);
 
+// A triangle's edges over a grid of cells, with the top-left rule. Edge k has the value a[k] x + b[k] y + right[k] i +
+// down[k] j + start[k] at sample (x, y) of cell (i, j). All terms are integers below 2^50.
+struct GridEdges {
+  double a[3], b[3], right[3], down[3], start[3];
+};
+
+struct GridCell {
+  std::uint32_t edges;  // index of the triangle's edges; cells of one triangle follow each other
+  std::int32_t x, y;
+};
+
+// The same for cells of a grid. Returns how many samples are covered.
+std::uint64_t sample_masks(const GridEdges* edges, const GridCell* cells, std::size_t count,
+                           const SamplePattern& pattern, std::uint32_t* masks);
+
 // The scalar twin. Int is std::int64_t or a counting number.
 template <class Int>
 std::uint32_t sample_mask_scalar(const Int a[3], const Int b[3], const Int c[3], const SamplePattern& pattern) {

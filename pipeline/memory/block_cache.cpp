@@ -52,15 +52,6 @@ void BlockCache::link_lines() {
   }
 }
 
-void BlockCache::begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
-  finish_request();
-  request_.block = block;
-  request_.key = key;
-  request_.counters = &counters;
-  const std::uint32_t line = line_of_[block];
-  request_.counts_bytes = line == kNone ? states_[block] != 0 : lines_[line].valid != all_sectors_;
-}
-
 void BlockCache::count_written(std::uint32_t first, std::uint32_t bytes) {
   const std::uint32_t end = first + bytes;
   for (std::uint32_t at = first; at < end;) {
@@ -80,10 +71,9 @@ void BlockCache::serve_request() {
     if (request.written_bytes[sector] >= whole) overwritten |= 1u << sector;
     request.written_bytes[sector] = 0;
   }
-  count_request(request.block, bytes_of(request.read) + bytes_of(request.write), counters);
+  count_request(request.block, bytes_of(request.read, request.write), counters);
   serve(request.block, request.read, request.write, static_cast<Sectors>(overwritten), counters);
-  request.block = ~std::size_t{0};
-  request.read = request.write = 0;
+  close_request();
 }
 
 void BlockCache::load(std::size_t block, Sectors missing, StageCounters& counters) {
@@ -145,11 +135,12 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
 // To or from the next level.
 void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, bool compressed,
                          StageCounters& counters) {
+  if (sectors == 0) return;
   const std::uint64_t bytes = bytes_of(sectors);
   counters.dram_bytes += bytes;
   if (level_ == Level::rop) count_l2(block, bytes, counters);
   if (places_.tally) places_.tally->add(places_.array_of(block), access, counters.stage, bytes, compressed);
-  if (places_.log && sectors != 0) record(access, block, sectors, counters);
+  if (places_.log) record(access, block, sectors, counters);
 }
 
 void BlockCache::record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters) {

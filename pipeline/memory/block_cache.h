@@ -79,7 +79,7 @@ class BlockCache {
       begin_request(key, block, counters);
     request_.read |= read;
     request_.write |= write;
-    if (write != 0 && request_.counts_bytes)
+    if (write != 0 && request_.counts_bytes) [[unlikely]]
       each_write([this](std::uint32_t first, std::uint32_t bytes) { count_written(first, bytes); });
   }
 
@@ -97,7 +97,13 @@ class BlockCache {
 
   // Serves the request that is still open.
   void finish_request() {
-    if ((request_.read | request_.write) != 0) serve_request();
+    if ((request_.read | request_.write) == 0) return;
+    const std::uint32_t place = line_of_[request_.block];
+    if (request_.counts_bytes || place == kNone || lines_[place].valid != all_sectors_) return serve_request();
+    count_request(request_.block, bytes_of(request_.read, request_.write), *request_.counters);
+    lines_[place].dirty |= request_.write;
+    if (lines_[place].newer != kNone) use(lines_[place]);
+    close_request();
   }
 
   // Writes back every dirty line and empties the cache.
@@ -113,6 +119,9 @@ class BlockCache {
   std::uint32_t sector_bytes() const { return 1u << log2_sector_; }
   std::uint32_t sectors_in(std::uint32_t bytes) const { return (bytes + sector_bytes() - 1) >> log2_sector_; }
   std::uint64_t bytes_of(Sectors sectors) const { return std::uint64_t{population_count(sectors)} << log2_sector_; }
+  std::uint64_t bytes_of(Sectors read, Sectors write) const {
+    return std::uint64_t{population_count(read | std::uint32_t{write} << 8)} << log2_sector_;
+  }
 
   // State of a block in memory: kRaw, or the number of sectors that it is compressed to; 0 means cleared.
   using State = std::uint8_t;
@@ -148,7 +157,18 @@ class BlockCache {
     counters.l2_bytes += bytes;
     if (places_.tally) places_.tally->add_l2(places_.array_of(block), counters.stage, bytes);
   }
-  void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters);
+  void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
+    finish_request();
+    request_.block = block;
+    request_.key = key;
+    request_.counters = &counters;
+    const std::uint32_t place = line_of_[block];
+    request_.counts_bytes = place == kNone ? states_[block] != 0 : lines_[place].valid != all_sectors_;
+  }
+  void close_request() {
+    request_.block = ~std::size_t{0};
+    request_.read = request_.write = 0;
+  }
   void count_written(std::uint32_t first, std::uint32_t bytes);
   void serve_request();
   void serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters) {

@@ -167,12 +167,15 @@ class AttributesInOrder {
 
   template <class Fragment>
   void read(const std::vector<Fragment>& fragments, StageCounters& counters) {
+    std::uint32_t last = ~0u;  // triangle
     for (const Fragment& fragment : fragments) {
-      if (!fetches_ || fetches_->is_flat(fragment.triangle)) {
-        records_.read(fragment.triangle, counters);
-      } else if (fragment.triangle != last_) {
-        fetches_->attributes(fragment.triangle, counters);
-        last_ = fragment.triangle;
+      if (fragment.triangle == last) continue;
+      last = fragment.triangle;
+      if (!fetches_ || fetches_->is_flat(last)) {
+        records_.read(last, counters);
+      } else if (last != fetched_) {
+        fetches_->attributes(last, counters);
+        fetched_ = last;
       }
     }
   }
@@ -180,7 +183,7 @@ class AttributesInOrder {
  private:
   RecordsInOrder records_;
   TriangleFetches* fetches_;
-  std::uint32_t last_ = ~0u;  // triangle that was fetched
+  std::uint32_t fetched_ = ~0u;  // triangle
 };
 
 }  // namespace beampipe

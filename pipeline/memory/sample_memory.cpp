@@ -1,5 +1,7 @@
 #include "pipeline/memory/sample_memory.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 
 namespace beampipe {
@@ -8,15 +10,21 @@ namespace {
 // Cells are numbered pixel by pixel, and the elements of the Z order row by row.
 std::vector<std::uint32_t> cell_positions(const Tile& tile, const CellGrid& grid, const ZOrder& order) {
   std::vector<std::uint32_t> positions;
-  positions.reserve(tile.pixels() * static_cast<std::size_t>(grid.cells_per_pixel()));
-  for (std::int32_t y = 0; y < tile.height(); ++y)
-    for (std::int32_t x = 0; x < tile.width(); ++x)
-      for (std::int32_t cell = 0; cell < grid.cells_per_pixel(); ++cell)
-        positions.push_back(
-            order.of[static_cast<std::size_t>((y * grid.rows + cell / grid.columns) * tile.width() * grid.columns +
-                                              x * grid.columns + cell % grid.columns)]);
+  positions.reserve(order.of.size());
+  const std::int32_t width = tile.width() * grid.columns;
+  for (std::int32_t y = 0; y < tile.height() * grid.rows; y += grid.rows)
+    for (std::int32_t x = 0; x < width; x += grid.columns)
+      for (std::int32_t row = y; row < y + grid.rows; ++row)
+        for (std::int32_t column = x; column < x + grid.columns; ++column)
+          positions.push_back(order.of[static_cast<std::size_t>(row * width + column)]);
   return positions;
 }
+
+constexpr std::array<std::uint32_t, kMaxMaskSamples> kBit = [] {
+  std::array<std::uint32_t, kMaxMaskSamples> bits{};
+  for (std::size_t s = 0; s < bits.size(); ++s) bits[s] = 1u << s;
+  return bits;
+}();
 
 bool all_equal(const std::uint32_t* values, std::size_t count) {
   std::uint32_t differences = 0;
@@ -57,24 +65,31 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
                           StageCounters& counters) {
   if (!modelled_) return;
   write_color = write_color && color_;
-  for (const SampleAccess& access : accesses) {
-    const std::uint32_t position = cell_position_[access.cell];
-    const std::size_t first = std::size_t{position} * samples_;
-    depth_.access_at(access.triangle, position, access.tested, write_depth ? access.passed : 0, counters);
-    if (write_color) color_->access_at(access.triangle, position, 0, access.passed, counters);
-    own(first, access.passed, access.triangle, owner_);
+  // What lies in one block is accessed at once. That changes no order between the surfaces: the cache of depth hears of
+  // the next block after that of colour has heard of this one.
+  for (std::size_t first = 0, end = 0; first < accesses.size(); first = end) {
+    const auto at = [&](std::size_t from, bool reads, bool writes) {
+      return [this, access = &accesses[from], reads, writes](std::size_t i) {
+        return TileSurface::Access{access[i].triangle, cell_position_[access[i].cell], reads ? access[i].tested : 0,
+                                   writes ? access[i].passed : 0};
+      };
+    };
+    end = first + depth_.access_run(accesses.size() - first, at(first, true, write_depth), counters);
+    for (std::size_t i = first, next = end; i < end; i = next) {
+      if (write_color) next = i + color_->access_run(end - i, at(i, false, true), counters);
+      for (std::size_t own_of = i; own_of < next; ++own_of) {
+        const SampleAccess& access = accesses[own_of];
+        own(std::size_t{cell_position_[access.cell]} * samples_, access.passed, access.triangle, owner_);
+      }
+    }
   }
 }
 
-// `first`: of the cell's samples.
+// `first`: of the cell's samples. Branches on single samples would not be predicted.
 void SampleMemory::own(std::size_t first, std::uint32_t samples, std::uint32_t triangle,
                        std::vector<std::uint32_t>& owner) const {
-  if (covers_cell(samples)) {
-    std::fill_n(owner.begin() + static_cast<std::ptrdiff_t>(first), samples_, triangle);
-    return;
-  }
-  for (std::uint32_t left = samples; left != 0; left &= left - 1)
-    owner[first + static_cast<std::size_t>(std::countr_zero(left))] = triangle;
+  std::uint32_t* const owners = owner.data() + first;
+  for (std::size_t s = 0; s < samples_; ++s) owners[s] = (samples & kBit[s]) != 0 ? triangle : owners[s];
 }
 
 void SampleMemory::test_in_order(const std::vector<OrderedAccess>& accesses, StageCounters& counters) {
@@ -133,27 +148,30 @@ void SampleMemory::add_bytes(std::vector<float>& pixels) const {
 std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) {
   const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, owner_.size());
   const std::size_t samples = elements * samples_, raw = samples * kSampleDepthBytes;
-  std::vector<std::uint32_t>& planes = planes_;
-  planes.clear();
+  if (end - begin == samples && owner_[begin] != kNoTriangle && all_equal(&owner_[begin], samples))
+    return std::min(plane_bytes_, static_cast<std::uint32_t>(raw));
+  // What differs from the sample before, and of that what differs from all before.
+  planes_.resize(samples);
+  std::size_t changes = 0, planes = 0;
+  std::uint32_t before = kNoTriangle;
   bool cleared = end - begin < samples;
-  const auto add_plane = [&](std::uint32_t owner) {
-    if (owner == kNoTriangle) {
-      cleared = true;
-    } else if (planes.empty() || planes.back() != owner) {
-      const auto found = std::find(planes.begin(), planes.end(), owner);
-      if (found == planes.end()) {
-        planes.push_back(owner);
-      } else {
-        std::swap(*found, planes.back());
-      }
-    }
-  };
-  for (const std::uint32_t* owners = owner_.data() + begin; owners != owner_.data() + end; owners += samples_) {
-    std::for_each(owners, owners + (all_equal(owners, samples_) ? 1 : samples_), add_plane);
-    if (planes.size() * plane_bytes_ >= raw) return static_cast<std::uint32_t>(raw);
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t owner = owner_[i];
+    planes_[changes] = owner;
+    changes += owner != before && owner != kNoTriangle;
+    cleared |= owner == kNoTriangle;
+    before = owner;
   }
-  const auto index_bits = static_cast<std::size_t>(std::bit_width(planes.size() + cleared - 1));
-  return static_cast<std::uint32_t>(planes.size() * plane_bytes_ + (samples * index_bits + 7) / 8);
+  for (std::size_t i = 0; i < changes; ++i) {
+    const std::uint32_t owner = planes_[i];
+    bool known = false;
+    for (std::size_t j = 0; j < planes; ++j) known |= planes_[j] == owner;
+    planes_[planes] = owner;
+    planes += !known;
+  }
+  if (planes * plane_bytes_ >= raw) return static_cast<std::uint32_t>(raw);
+  const auto index_bits = static_cast<std::size_t>(std::bit_width(planes + cleared - 1));
+  return static_cast<std::uint32_t>(planes * plane_bytes_ + (samples * index_bits + 7) / 8);
 }
 
 // One value per element, when the samples of each element of the block agree.

@@ -31,12 +31,13 @@ BlockCache::CompressedBytes of_blocks(const TileSurface::CompressedBytes& compre
 
 ZOrder::ZOrder(std::int32_t width, std::int32_t height) {
   of.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::vector<std::uint32_t> columns;
+  for (std::int32_t x = 0; x < width; ++x) columns.push_back(spread_bits(static_cast<std::uint32_t>(x)));
   for (std::int32_t y = 0; y < height; ++y) {
-    for (std::int32_t x = 0; x < width; ++x) {
-      of.push_back(spread_bits(static_cast<std::uint32_t>(x)) | spread_bits(static_cast<std::uint32_t>(y)) << 1);
-      positions = std::max<std::size_t>(positions, of.back() + 1);
-    }
+    const std::uint32_t row = spread_bits(static_cast<std::uint32_t>(y)) << 1;
+    for (const std::uint32_t column : columns) of.push_back(row | column);
   }
+  if (!of.empty()) positions = std::size_t{of.back()} + 1;
 }
 
 std::vector<TileSurface::Parts> TileSurface::part_table(std::uint32_t elements, std::uint32_t parts,

@@ -47,15 +47,46 @@ class TileSurface {
   // The same for the element at a position of the Z order.
   void access_at(std::uint32_t key, std::uint32_t position, std::uint32_t read, std::uint32_t write,
                  StageCounters& counters) {
-    if (touched_parts_.empty()) return;  // there are no accesses to model
-    const std::uint32_t block = position >> log2_elements_per_block_;
-    const std::uint32_t place = position - (block << log2_elements_per_block_);
-    const Parts reads = parts_of(place, read), writes = parts_of(place, write);
-    touched_parts_[position] += std::uint32_t{reads.count} + writes.count;
-    cache_.access(key, block, reads.sectors, writes.sectors, counters, [&](auto&& count) {
-      for (std::uint32_t left = write; left != 0; left &= left - 1)
-        count(place * element_bytes_ + static_cast<std::uint32_t>(std::countr_zero(left)) * part_bytes_, part_bytes_);
+    access_run(
+        1,
+        [&](std::size_t) {
+          return Access{key, position, read, write};
+        },
+        counters);
+  }
+
+  // An element's key, its position in the Z order, and the parts to read and write.
+  struct Access {
+    std::uint32_t key, position, read, write;
+  };
+
+  // Of `count` accesses, at(0), at(1), ..., at least one: those at the front that have one key and lie in one block,
+  // which are one request. Returns how many these are.
+  template <class At>
+  std::size_t access_run(std::size_t count, At&& at, StageCounters& counters) {
+    if (touched_parts_.empty()) return count;  // there are no accesses to model
+    Access access = at(0);
+    const std::uint32_t key = access.key, block = access.position >> log2_elements_per_block_;
+    const std::uint32_t first_position = block << log2_elements_per_block_;
+    Sectors read = 0, write = 0;
+    std::size_t run = 0;
+    do {
+      const std::uint32_t place = access.position - first_position;
+      const Parts reads = parts_of(place, access.read), writes = parts_of(place, access.write);
+      touched_parts_[access.position] += std::uint32_t{reads.count} + writes.count;
+      read |= reads.sectors, write |= writes.sectors;
+      if (++run == count) break;
+      access = at(run);
+    } while (access.key == key && access.position >> log2_elements_per_block_ == block);
+    cache_.access(key, block, read, write, counters, [&](auto&& count_bytes) {
+      for (std::size_t i = 0; i < run; ++i) {
+        const Access written = at(i);
+        const std::uint32_t begin = (written.position - first_position) * element_bytes_;
+        for (std::uint32_t left = written.write; left != 0; left &= left - 1)
+          count_bytes(begin + static_cast<std::uint32_t>(std::countr_zero(left)) * part_bytes_, part_bytes_);
+      }
     });
+    return run;
   }
 
   // The same for elements of a single part.

@@ -116,12 +116,20 @@ void DepthTestUnit::count_bytes() {
 
 void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
                     std::vector<float>& counts) {
+  const auto pixel_of = [grid, tile](const SampleFragment& fragment) {
+    return tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
+  };
+  if (grid.cells_per_pixel() == 1) {
+    for (const SampleFragment& fragment : fragments) ++counts[pixel_of(fragment)];
+    return;
+  }
+  const bool quads_share_pixels = grid.columns > 1 && grid.rows > 1;
   std::vector<std::uint32_t> last(counts.size(), ~0u);  // the triangle that was counted last
-  for (const SampleFragment& fragment : fragments) {
-    const std::int32_t x = grid.pixel_x(fragment.x) - tile.x0, y = grid.pixel_y(fragment.y) - tile.y0;
-    const auto pixel = static_cast<std::size_t>(y * tile.width() + x);
-    counts[pixel] += last[pixel] != fragment.triangle;
-    last[pixel] = fragment.triangle;
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    if (quads_share_pixels && !starts_quad(fragments, i)) continue;
+    const std::size_t pixel = pixel_of(fragments[i]);
+    counts[pixel] += last[pixel] != fragments[i].triangle;
+    last[pixel] = fragments[i].triangle;
   }
 }
 

@@ -52,6 +52,20 @@ class ClosedDepth {
     depth_[pixel] = farthest;
   }
 
+  // Is the triangle hidden in the pixel? If not and if it `closes` the pixel, it does. hides() and close() in one,
+  // without branches that depend on the depths. The caller counts what it has asked for.
+  bool hides_or_closes(std::int32_t x, std::int32_t y, float nearest, float farthest, bool closes) {
+    float& depth = depth_[tile_.index(x, y)];
+    const bool hidden = nearest > depth, changes = closes & !hidden & (farthest < depth);
+    work_.changes += changes;
+    changes_ += changes & (depth == farthest_);
+    depth = changes ? farthest : depth;
+    return hidden;
+  }
+  void count(std::uint64_t tests, std::uint64_t hidden, std::uint64_t closings) {
+    work_.pixel_tests += tests, work_.hidden += hidden, work_.closings += closings;
+  }
+
   // Brings hides_everywhere up to date once every pixel has become nearer than the tile's depth.
   void refresh() {
     if (changes_ < depth_.size()) return;

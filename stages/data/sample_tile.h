@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "simd/depth_compare.h"
 #include "stages/data/pixel_observer.h"
 #include "stages/data/sample_fragment.h"
 
@@ -32,14 +33,6 @@ struct SampleTile {
   std::size_t first_observed = 0;
 
   SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes_per_sample = kSampleColorBytes);
-};
-
-// What a fragment did to the samples of its cell; the memory model replays it. Bit s of a mask is sample s.
-struct SampleAccess {
-  std::uint32_t cell;      // within the tile: pixel (row by row) x cells per pixel + cell within the pixel
-  std::uint32_t triangle;  // index into SetupTriangles
-  std::uint32_t tested;    // samples whose depth was read
-  std::uint32_t passed;    // samples that were written
 };
 
 }  // namespace beampipe

@@ -37,18 +37,35 @@ struct SampleRun {
   bool varies;             // its colour depends on the cell that it lies in
 };
 
+// Compares many at once, without branches.
+bool all_are(const std::uint32_t* values, std::size_t count, std::uint32_t value) {
+  std::uint32_t differences = 0;
+  for (std::size_t i = 0; i < count; ++i) differences |= values[i] ^ value;
+  return differences == 0;
+}
+
+// Do all samples of the pixel show the same, which is flat?
+bool is_flat(const SampleTile& surface, std::size_t pixel, const TileShader& shader) {
+  const std::uint32_t* const owner = surface.triangle.data() + pixel * surface.samples_per_pixel;
+  return surface.over.empty() && all_are(owner, surface.samples_per_pixel, *owner) &&
+         (*owner == kNoTriangle || shader.is_flat(*owner));
+}
+
 // Calls visit(run) for the runs of a pixel, in order.
 template <class Visit>
 void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samples_per_cell, const TileShader& shader,
                   Visit&& visit) {
   const std::size_t samples = surface.samples_per_pixel;
   const std::uint32_t* const owner = surface.triangle.data() + pixel * samples;
+  if (is_flat(surface, pixel, shader)) return visit(SampleRun{0, samples, *owner, false});
+  constexpr std::size_t kBlock = 8;  // samples
   const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
   for (std::size_t s = 0; s < samples;) {
     const std::uint32_t triangle = owner[s];
     const bool varies = triangle != kNoTriangle && !shader.is_flat(triangle);
     const std::size_t most = varies ? s - s % samples_per_cell + samples_per_cell : samples;
     std::size_t end = s + 1;
+    while (!over && end + kBlock <= most && all_are(owner + end, kBlock, triangle)) end += kBlock;
     while (end < most && owner[end] == triangle && (!over || over[end] == over[s])) ++end;
     visit(SampleRun{s, end, triangle, varies});
     s = end;
@@ -78,9 +95,18 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   const double share = 1.0 / static_cast<double>(samples);
   std::vector<glm::vec4> image;
   image.reserve(pixels);
+  bool was_flat = false;  // the pixel before
+  std::uint32_t last = kNoTriangle;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
     PixelObserver* const observer = observer_at(surface.observers, pixel);
+    const std::uint32_t triangle = surface.triangle[pixel * samples];
+    const bool flat = is_flat(surface, pixel, shader);
+    if (flat && was_flat && triangle == last && !observer) {
+      image.push_back(image.back());
+      continue;
+    }
+    was_flat = flat, last = triangle;
     // Runs of equal samples are added at once. The sum is that of a box filter in double precision either way.
     glm::dvec3 sum(0.0);
     double covered = 0;

@@ -1,8 +1,9 @@
 #include "stages/raster/sample_raster.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 
-#include "simd/population_count.h"
 #include "simd/sample_mask.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/sample_raster_cost.h"
@@ -11,51 +12,118 @@
 namespace beampipe {
 namespace {
 
-// `x`, `y`: the cell's upper left corner in 1/256 px.
-CellEdges cell_edges(const EdgeSet& set, std::int64_t x, std::int64_t y) {
-  CellEdges cell;
+GridEdges grid_edges(const EdgeSet& set, const CellGrid& grid) {
+  GridEdges edges;
   for (std::size_t k = 0; k < 3; ++k) {
     const Edge& edge = set.edges[k];
-    cell.a[k] = edge.a, cell.b[k] = edge.b;
-    cell.c[k] = edge.at(x, y) - (edge.owns ? 0 : 1);
+    edges.a[k] = edge.a, edges.b[k] = edge.b;
+    edges.right[k] = static_cast<double>(std::int64_t{edge.a} * grid.cell_width());
+    edges.down[k] = static_cast<double>(std::int64_t{edge.b} * grid.cell_height());
+    edges.start[k] = static_cast<double>(edge.c - (edge.owns ? 0 : 1));
   }
-  return cell;
+  return edges;
 }
 
-// Cells that need the sample test. Blocks of them are tested at once, while they are in the nearest cache.
-class PartialCells {
- public:
-  PartialCells(const SamplePattern& pattern, std::vector<SampleFragment>& fragments, SampleRasterWork& work)
-      : pattern_(pattern), fragments_(fragments), work_(work) {}
+// Eight columns of two rows of cells, quad by quad: bit 4 q + 2 j + i is cell (2 q + i, j).
+struct QuadCells {
+  std::uint32_t touched, full;
+};
 
-  // The cell of the next fragment.
-  void add(const CellEdges& cell) {
-    if (count_ == kBlock) test();
-    cells_[count_] = cell;
-    fragment_[count_++] = fragments_.size();
+QuadCells quads_of(const CellRow (&rows)[2], int first_column) {
+  const auto columns = [&](std::uint32_t row) { return std::uint64_t{row >> first_column & 0xff}; };
+  std::uint64_t bits = columns(rows[0].touched) | columns(rows[1].touched) << 16 | columns(rows[0].full) << 32 |
+                       columns(rows[1].full) << 48;
+  bits = (bits | bits << 4) & 0x0f0f0f0f0f0f0f0f;  // pairs of bits move apart
+  bits = (bits | bits << 2) & 0x3333333333333333;
+  bits |= bits >> 14;
+  return {static_cast<std::uint32_t>(bits & 0xffff), static_cast<std::uint32_t>(bits >> 32 & 0xffff)};
+}
+
+// The fragments of some triangles, before the samples of their partial cells are tested: in blocks, which stay in the
+// nearest cache.
+class FragmentBlock {
+ public:
+  FragmentBlock(const SampledTriangles& in, ClosedDepth* closed, std::vector<SampleFragment>& out,
+                SampleRasterWork& work)
+      : sampling_(in.sampling),
+        every_sample_(~0u >> (kMaxMaskSamples - in.sampling.pattern.count)),
+        closed_(closed),
+        out_(out),
+        work_(work) {}
+
+  // The cells that are added next belong to this triangle.
+  void start(std::uint32_t triangle, const EdgeSet& set, const DepthBounds<float>& depths, bool is_opaque) {
+    if (triangles_ == kTriangles) finish();
+    edges_[triangles_++] = grid_edges(set, sampling_.grid);
+    triangle_ = triangle, depths_ = depths, is_opaque_ = is_opaque;
   }
 
-  // Sets the masks of the fragments whose cells were added.
-  void test() {
-    std::array<std::uint32_t, kBlock> masks;
-    sample_masks(cells_.data(), count_, pattern_, masks.data());
-    for (std::size_t i = 0; i < count_; ++i) {
-      fragments_[fragment_[i]].mask = masks[i];
-      work_.covered_samples += population_count(masks[i]);
+  // As traverse_rows() visits them.
+  void add(std::int32_t left, std::int32_t top, const CellRow (&rows)[2]) {
+    const std::uint32_t columns = rows[0].touched | rows[1].touched;
+    for (int first = 0; first < kCellsPerRow && columns >> first != 0; first += 8) {
+      add(left + first, top, quads_of(rows, first));
+      quad_ += 4;
     }
-    work_.partial_cells += count_;
-    count_ = 0;
+  }
+
+  // Tests the samples of the partial cells, and hands on the fragments that have any.
+  void finish() {
+    std::array<std::uint32_t, kFragments> masks;
+    work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial_, sampling_.pattern, masks.data());
+    work_.partial_cells += partial_;
+    for (std::size_t i = 0; i < partial_; ++i) fragments_[fragment_[i]].mask = masks[i];
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const bool has_samples = fragments_[i].mask != 0;  // asked before the copy, which would have to be waited for
+      fragments_[left] = fragments_[i];
+      left += has_samples;
+    }
+    out_.insert(out_.end(), fragments_.begin(), fragments_.begin() + static_cast<std::ptrdiff_t>(left));
+    if (triangles_ > 0) edges_[0] = edges_[triangles_ - 1];  // its cells may go on
+    count_ = partial_ = 0;
+    triangles_ = std::min<std::size_t>(triangles_, 1);
   }
 
  private:
-  static constexpr std::size_t kBlock = 256;
+  static constexpr std::size_t kTriangles = 64, kFragments = 256, kGroup = 16;
 
-  const SamplePattern& pattern_;
-  std::vector<SampleFragment>& fragments_;
+  // Nothing branches on what is full or hidden, which no processor predicts.
+  void add(std::int32_t left, std::int32_t top, const QuadCells& cells) {
+    if (count_ + kGroup > kFragments) finish();
+    const std::size_t count_before = count_, partial_before = partial_;
+    std::size_t tests = 0;
+    for (std::uint32_t bits = cells.touched; bits != 0; bits &= bits - 1, ++tests) {
+      const int bit = std::countr_zero(bits);
+      const std::int32_t x = left + (bit >> 2) * 2 + (bit & 1), y = top + (bit >> 1 & 1);
+      const bool full = (cells.full >> bit & 1) != 0;
+      const bool hidden =
+          closed_ && closed_->hides_or_closes(x, y, depths_.nearest, depths_.farthest, full & is_opaque_);
+      fragments_[count_] = {triangle_, quad_ + static_cast<std::uint32_t>(bit >> 2), x, y, every_sample_};
+      cells_[partial_] = {static_cast<std::uint32_t>(triangles_ - 1), x, y};
+      fragment_[partial_] = static_cast<std::uint32_t>(count_);
+      partial_ += !full & !hidden;
+      count_ += !hidden;
+    }
+    if (!closed_) return;
+    const std::size_t visible = count_ - count_before, full = visible - (partial_ - partial_before);
+    closed_->count(tests, tests - visible, is_opaque_ ? full : 0);
+  }
+
+  const Sampling& sampling_;
+  std::uint32_t every_sample_;
+  ClosedDepth* closed_;
+  std::vector<SampleFragment>& out_;
   SampleRasterWork& work_;
-  std::size_t count_ = 0;
-  std::array<CellEdges, kBlock> cells_;
-  std::array<std::size_t, kBlock> fragment_;
+
+  std::uint32_t triangle_ = 0, quad_ = 0;
+  DepthBounds<float> depths_{};
+  bool is_opaque_ = false;
+  std::size_t triangles_ = 0, count_ = 0, partial_ = 0;
+  std::array<GridEdges, kTriangles> edges_;
+  std::array<SampleFragment, kFragments> fragments_;
+  std::array<GridCell, kFragments> cells_;          // those that are partial
+  std::array<std::uint32_t, kFragments> fragment_;  // of each of them: its number in the block
 };
 
 DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
@@ -66,35 +134,25 @@ DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
 
 void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCounters& counters,
                    std::vector<SampleFragment>& out, ClosedDepth* closed) {
-  const Sampling& sampling = in.sampling;
-  const std::uint32_t every_sample = ~0u >> (kMaxMaskSamples - sampling.pattern.count);
   const std::size_t before = out.size();
-  Traversal traversal{in.tile, sampling.grid, FullMeans::samples};
+  Traversal traversal{in.tile, in.sampling.grid, FullMeans::samples};
   SampleRasterWork work;
-  PartialCells partial(sampling.pattern, out, work);
+  FragmentBlock block(in, closed, out, work);
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = in.triangles.triangles[index];
     const DepthBounds<float> depths = sample_bounds(triangle);
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
     const EdgeSet set(triangle);
-    traverse(triangle, set, traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
-      if (closed && closed->hides(x, y, depths.nearest)) return;
-      if (closed && full && in.triangles.is_opaque(index)) closed->close(x, y, depths.farthest);
-      if (!full) {
-        partial.add(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
-                               std::int64_t{y} * sampling.grid.cell_height()));
-      }
-      out.push_back({index, q, x, y, every_sample});
-    });
+    block.start(index, set, depths, in.triangles.is_opaque(index));
+    traverse_rows(triangle, set, traversal,
+                  [&](std::int32_t left, std::int32_t top, const CellRow(&rows)[2]) { block.add(left, top, rows); });
     if (closed) closed->refresh();
   }
-  partial.test();
-  const auto start = out.begin() + static_cast<std::ptrdiff_t>(before);
-  out.erase(std::remove_if(start, out.end(), [](const SampleFragment& f) { return f.mask == 0; }), out.end());
+  block.finish();
 
   work.traversal = traversal.counts;
   work.fragments = out.size() - before;
-  charge(work, sampling.pattern, counters);
+  charge(work, in.sampling.pattern, counters);
   if (closed) {
     charge_bounds(list.size(), counters);
     charge(*closed, counters);

@@ -48,7 +48,7 @@ struct TraversalCounts {
   std::uint64_t boxes = 0;       // triangles whose bounding box was computed
   std::uint64_t traversals = 0;  // triangles whose bounding box touches a cell of the tile
   std::uint64_t cells_tested = 0;
-  std::uint64_t cells_touched = 0;
+  std::uint64_t cells_touched = 0;  // only by traverse()
 };
 
 // When a cell counts as full: the triangle covers the closed cell, or it owns every sample that the cell could have.
@@ -74,10 +74,10 @@ inline EdgeOverCells edge_over_cells(const Edge& edge, const CellGrid& grid, Ful
   return over;
 }
 
-// Calls visit(x, y, quad, full) for every cell that the triangle touches, one 2x2 quad after the other. `quad`: the
-// same number for all cells in one quad. `full`: the triangle covers the whole cell. `set`: the triangle's edges.
+// Calls visit(left, y, rows) for two rows at a time of at most kCellsPerRow cells that the triangle may touch: bit i of
+// rows[j] is cell (left + i, y + j). `left` and `y` are even. `set`: the triangle's edges.
 template <class Visit>
-void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
+void traverse_rows(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
   const CellGrid& grid = traversal.grid;
   const CellRange range = touched_range(triangle, traversal.tile, grid);
   TraversalCounts& counts = traversal.counts;
@@ -89,28 +89,36 @@ void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& trav
   const std::int64_t w = grid.cell_width(), h = grid.cell_height();
   EdgeOverCells edges[3];
   for (std::size_t k = 0; k < 3; ++k) edges[k] = edge_over_cells(set.edges[k], grid, traversal.meaning);
-  for (std::int32_t quad_y = range.y0 & ~1; quad_y < range.y1; quad_y += 2) {
+  for (std::int32_t y = range.y0 & ~1; y < range.y1; y += 2) {
     for (std::int32_t left = range.x0 & ~1; left < range.x1; left += kCellsPerRow) {
       const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start inside a quad
-      for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, quad_y * h));
+      for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, y * h));
       auto [rows] = cell_rows(edges, static_cast<std::size_t>(std::min(range.x1 - left, kCellsPerRow)));
-      for (std::int32_t j = 0; j < 2; ++j)
-        rows[j].touched &= quad_y + j >= range.y0 && quad_y + j < range.y1 ? inside : 0;
-      const std::uint32_t columns = rows[0].touched | rows[1].touched;
-      constexpr std::uint32_t kEven = 0x55555555;
-      for (std::uint32_t quads = (columns | columns >> 1) & kEven; quads != 0; quads &= quads - 1) {
-        const int first = std::countr_zero(quads);
-        for (std::int32_t y = 0; y < 2; ++y) {
-          for (int x = first; x < first + 2; ++x) {
-            if ((rows[y].touched >> x & 1) == 0) continue;
-            ++counts.cells_touched;
-            visit(left + x, quad_y + y, traversal.quad, (rows[y].full >> x & 1) != 0);
-          }
-        }
-        ++traversal.quad;
-      }
+      for (std::int32_t j = 0; j < 2; ++j) rows[j].touched &= y + j >= range.y0 && y + j < range.y1 ? inside : 0;
+      visit(left, y, rows);
     }
   }
+}
+
+// Calls visit(x, y, quad, full) for every cell that the triangle touches, one 2x2 quad after the other. `quad`: the
+// same number for all cells in one quad. `full`: the triangle covers the whole cell.
+template <class Visit>
+void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
+  traverse_rows(triangle, set, traversal, [&](std::int32_t left, std::int32_t top, const CellRow(&rows)[2]) {
+    const std::uint32_t columns = rows[0].touched | rows[1].touched;
+    constexpr std::uint32_t kEven = 0x55555555;
+    for (std::uint32_t quads = (columns | columns >> 1) & kEven; quads != 0; quads &= quads - 1) {
+      const int first = std::countr_zero(quads);
+      for (std::int32_t y = 0; y < 2; ++y) {
+        for (int x = first; x < first + 2; ++x) {
+          if ((rows[y].touched >> x & 1) == 0) continue;
+          ++traversal.counts.cells_touched;
+          visit(left + x, top + y, traversal.quad, (rows[y].full >> x & 1) != 0);
+        }
+      }
+      ++traversal.quad;
+    }
+  });
 }
 
 }  // namespace beampipe

@@ -12,40 +12,37 @@ namespace {
 
 constexpr std::size_t kBlock = 256;  // fragments; what the kernels read of them stays in the nearest cache
 
-// The input of a kernel, and its output.
-struct Block {
-  std::array<CellDepth, kBlock> items;
-  std::array<std::uint32_t, kBlock> masks;
-};
-
-void set_items(const SampledTriangles& in, const SampleFragment* fragments, std::size_t count, Block& block) {
-  const CellGrid& grid = in.sampling.grid;
+// The input of a kernel. A triangle's cells follow each other, and its slopes are the same in all of them.
+void set_items(const SampledTriangles& in, const SampleFragment* fragments, std::size_t count, SampleAccess* accesses,
+               CellPlane<float>* planes) {
+  const CellGrid grid = in.sampling.grid;
+  const Tile tile = in.tile;
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
-  for (std::size_t i = 0; i < count; ++i) {
-    const SampleFragment& fragment = fragments[i];
-    CellDepth& item = block.items[i];
-    item.cell = cell_number(fragment, in.tile, grid);
-    item.mask = fragment.mask;
-    item.triangle = fragment.triangle;
-    item.plane =
-        cell_plane(in.triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
+  for (std::size_t first = 0, end = 0; first < count; first = end) {
+    const std::uint32_t triangle = fragments[first].triangle;
+    const ScreenDepth depth = in.triangles.triangles[triangle].depth;
+    CellPlane<float> plane = cell_plane(depth, 0.0, 0.0);
+    for (; end < count && fragments[end].triangle == triangle; ++end) {
+      const SampleFragment& fragment = fragments[end];
+      plane.z = cell_depth(depth, fragment.x * cell_width, fragment.y * cell_height);
+      planes[end] = plane;
+      accesses[end] = {cell_number(fragment, tile, grid), triangle, fragment.mask, 0};
+    }
   }
 }
 
-// Calls test(items, count, masks) for one block of fragments after the other and lists which of their samples pass.
+// Calls test(accesses, planes, count) for one block of fragments after the other.
 template <class Test>
 SampleCounts test_blocks(const SampledTriangles& in, const std::vector<SampleFragment>& fragments,
                          std::vector<SampleAccess>& accesses, Test&& test) {
   SampleCounts samples{0, 0};
-  Block block;
+  std::array<CellPlane<float>, kBlock> planes;
   accesses.resize(fragments.size());
   for (std::size_t first = 0; first < fragments.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, fragments.size() - first);
-    set_items(in, &fragments[first], count, block);
-    const SampleCounts of_block = test(block.items.data(), count, block.masks.data());
+    set_items(in, &fragments[first], count, &accesses[first], planes.data());
+    const SampleCounts of_block = test(&accesses[first], planes.data(), count);
     samples.tested += of_block.tested, samples.passed += of_block.passed;
-    for (std::size_t i = 0; i < count; ++i)
-      accesses[first + i] = {block.items[i].cell, block.items[i].triangle, block.items[i].mask, block.masks[i]};
   }
   return samples;
 }
@@ -62,8 +59,8 @@ void tell(const std::vector<SampleAccess>& accesses, const Sampling& sampling, c
 SampleCounts keep_equal(const SampledTriangles& in, const SampleTile& surface, std::vector<SampleFragment>& fragments,
                         std::vector<SampleAccess>& accesses) {
   const SampleCounts samples =
-      test_blocks(in, fragments, accesses, [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
-        return depth_equal(items, count, in.sampling.pattern, surface.depth.data(), masks);
+      test_blocks(in, fragments, accesses, [&](SampleAccess* items, const CellPlane<float>* planes, std::size_t count) {
+        return depth_equal(items, planes, count, in.sampling.pattern, surface.depth.data());
       });
   for (std::size_t i = 0; i < fragments.size(); ++i) fragments[i].mask = accesses[i].passed;
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
@@ -83,8 +80,8 @@ void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& f
                 SampleTile& surface, std::vector<SampleAccess>& accesses) {
   const SamplePattern& pattern = in.sampling.pattern;
   const SampleCounts samples =
-      test_blocks(in, fragments, accesses, [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
-        return depth_test(items, count, pattern, {surface.depth.data(), surface.triangle.data()}, masks);
+      test_blocks(in, fragments, accesses, [&](SampleAccess* items, const CellPlane<float>* planes, std::size_t count) {
+        return depth_test(items, planes, count, pattern, {surface.depth.data(), surface.triangle.data()});
       });
   charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, pattern, counters);
   if (surface.observers) tell(accesses, in.sampling, surface);

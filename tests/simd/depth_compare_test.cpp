@@ -16,20 +16,48 @@ Samples cleared(std::size_t cells, const SamplePattern& pattern) {
   return {std::vector<float>(samples, 1.0f), std::vector<std::uint32_t>(samples, 0xdeadbeef)};
 }
 
-std::uint64_t twin(const std::vector<CellDepth>& items, const SamplePattern& pattern, Samples& samples) {
-  std::uint64_t passed = 0;
-  for (const CellDepth& item : items)
+struct Items {
+  std::vector<SampleAccess> accesses;
+  std::vector<CellPlane<float>> planes;
+
+  void add(std::uint32_t cell, std::uint32_t triangle, std::uint32_t mask, const CellPlane<float>& plane) {
+    accesses.push_back({cell, triangle, mask, 0xdeadbeef});
+    planes.push_back(plane);
+  }
+  SampleCounts test(const SamplePattern& pattern, Samples& samples) {
+    return depth_test(accesses.data(), planes.data(), accesses.size(), pattern,
+                      {samples.depth.data(), samples.triangle.data()});
+  }
+  std::vector<std::uint32_t> passed() const {
+    std::vector<std::uint32_t> masks;
+    for (const SampleAccess& access : accesses) masks.push_back(access.passed);
+    return masks;
+  }
+};
+
+std::vector<std::uint32_t> twin(const Items& items, const SamplePattern& pattern, Samples& samples) {
+  std::vector<std::uint32_t> passed;
+  for (std::size_t n = 0; n < items.accesses.size(); ++n) {
+    const SampleAccess& item = items.accesses[n];
+    passed.push_back(0);
     for (std::size_t s = 0; s < static_cast<std::size_t>(pattern.count); ++s) {
       const std::size_t i = item.cell * static_cast<std::size_t>(pattern.count) + s;
       float depth = 0;
-      if (!(item.mask >> s & 1)) continue;
+      if (!(item.tested >> s & 1)) continue;
       const auto x = static_cast<float>(pattern.x[s]), y = static_cast<float>(pattern.y[s]);
-      if (!depth_test_scalar(item.plane, x, y, samples.depth[i], depth)) continue;
+      if (!depth_test_scalar(items.planes[n], x, y, samples.depth[i], depth)) continue;
       samples.depth[i] = depth;
       samples.triangle[i] = item.triangle;
-      ++passed;
+      passed.back() |= 1u << s;
     }
+  }
   return passed;
+}
+
+std::uint64_t bits_of(const std::vector<std::uint32_t>& masks) {
+  std::uint64_t bits = 0;
+  for (const std::uint32_t mask : masks) bits += static_cast<std::uint64_t>(std::popcount(mask));
+  return bits;
 }
 
 // Several items per cell, equal depths, and neighbouring samples that a wide store must not change.
@@ -42,22 +70,21 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
     pattern.count = count;
     for (std::size_t s = 0; s < static_cast<std::size_t>(count); ++s)
       pattern.x[s] = random.int32(0, 255), pattern.y[s] = random.int32(0, 255);
-    std::vector<CellDepth> items;
-    for (std::uint32_t i = 0; i < 300; ++i)
-      items.push_back({static_cast<std::uint32_t>(random.integer(0, kCells - 1)),
-                       random.word() & (~0u >> (kMaxMaskSamples - count)),
-                       i,
-                       {-random.real32(0, 4) / 4, random.pick(kSlopes), random.pick(kSlopes)}});
-    std::uint64_t tested = 0;
-    for (const CellDepth& item : items) tested += static_cast<std::uint64_t>(std::popcount(item.mask));
+    Items items;
+    std::vector<std::uint32_t> tested;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+      tested.push_back(random.word() & (~0u >> (kMaxMaskSamples - count)));
+      items.add(static_cast<std::uint32_t>(random.integer(0, kCells - 1)), i, tested.back(),
+                {-random.real32(0, 4) / 4, random.pick(kSlopes), random.pick(kSlopes)});
+    }
     Samples expected = cleared(kCells, pattern);
-    const std::uint64_t expected_passes = twin(items, pattern, expected);
+    const std::vector<std::uint32_t> expected_passes = twin(items, pattern, expected);
     on_every_target([&] {
       Samples found = cleared(kCells, pattern);
-      const SampleCounts counts =
-          depth_test(items.data(), items.size(), pattern, {found.depth.data(), found.triangle.data()});
-      ASSERT_EQ(counts.tested, tested) << count << " samples";
-      ASSERT_EQ(counts.passed, expected_passes) << count << " samples";
+      const SampleCounts counts = items.test(pattern, found);
+      ASSERT_EQ(counts.tested, bits_of(tested)) << count << " samples";
+      ASSERT_EQ(counts.passed, bits_of(expected_passes)) << count << " samples";
+      ASSERT_EQ(items.passed(), expected_passes) << count << " samples";
       ASSERT_TRUE(found == expected) << count << " samples";
     });
   }
@@ -66,13 +93,15 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
 TEST(DepthCompare, NearerReplacesEqualDoesNot) {
   const SamplePattern pattern = standard_pattern(4);
   // Triangle 1 takes all samples, 2 has the same depth, 3 is nearer but covers samples 0 and 2 only, 4 is farther.
-  const std::vector<CellDepth> items = {{0, 0b1111u, 1, {-0.5f, 0, 0}},
-                                        {0, 0b1111u, 2, {-0.5f, 0, 0}},
-                                        {0, 0b0101u, 3, {-0.75f, 0, 0}},
-                                        {0, 0b1111u, 4, {-0.25f, 0, 0}}};
+  Items items;
+  items.add(0, 1, 0b1111u, {-0.5f, 0, 0});
+  items.add(0, 2, 0b1111u, {-0.5f, 0, 0});
+  items.add(0, 3, 0b0101u, {-0.75f, 0, 0});
+  items.add(0, 4, 0b1111u, {-0.25f, 0, 0});
   on_every_target([&] {
     Samples found = cleared(1, pattern);
-    EXPECT_EQ(depth_test(items.data(), items.size(), pattern, {found.depth.data(), found.triangle.data()}).passed, 6u);
+    EXPECT_EQ(items.test(pattern, found).passed, 6u);
+    EXPECT_EQ(items.passed(), (std::vector<std::uint32_t>{0b1111u, 0, 0b0101u, 0}));
     const std::vector<std::uint32_t> owners(found.triangle.begin(), found.triangle.begin() + 4);
     EXPECT_EQ(owners, (std::vector<std::uint32_t>{3, 1, 3, 1}));
     EXPECT_EQ(found.depth[0], -0.75f);

@@ -87,4 +87,70 @@ TEST(SampleMask, SampleOnAnEdgeIsCovered) {
   });
 }
 
+// Cells of a grid, of several triangles in a row.
+struct GridCells {
+  std::vector<GridEdges> edges;
+  std::vector<GridCell> cells;
+  std::vector<std::uint32_t> expected;
+};
+
+// Edges pass exactly through a sample of a cell far from the origin, or miss it by one unit.
+void add_triangle(Random& random, const SamplePattern& pattern, GridCells& grid) {
+  constexpr std::int64_t kFar = 1 << 15;
+  const std::int64_t width = std::int64_t{16} << random.integer(0, 4),
+                     height = std::int64_t{16} << random.integer(0, 4);
+  const std::int64_t x = random.integer(0, kFar), y = random.integer(0, kFar);
+  std::int64_t a[3], b[3], start[3];
+  GridEdges edges;
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t largest = 1 << random.int32(0, 24);
+    a[k] = random.integer(-largest, largest), b[k] = random.integer(-largest, largest);
+    const auto s = static_cast<std::size_t>(random.integer(0, pattern.count - 1));
+    start[k] = random.integer(-1, 1) - a[k] * (width * x + pattern.x[s]) - b[k] * (height * y + pattern.y[s]);
+    edges.a[k] = static_cast<double>(a[k]), edges.b[k] = static_cast<double>(b[k]);
+    edges.right[k] = static_cast<double>(a[k] * width), edges.down[k] = static_cast<double>(b[k] * height);
+    edges.start[k] = static_cast<double>(start[k]);
+  }
+  for (std::int64_t cells = random.integer(1, 5); cells > 0; --cells) {
+    const std::int64_t column = x + random.integer(-1, 1), row = y + random.integer(-1, 1);
+    std::int64_t corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = start[k] + a[k] * width * column + b[k] * height * row;
+    grid.cells.push_back({static_cast<std::uint32_t>(grid.edges.size()), static_cast<std::int32_t>(column),
+                          static_cast<std::int32_t>(row)});
+    grid.expected.push_back(sample_mask_scalar(a, b, corner, pattern));
+  }
+  grid.edges.push_back(edges);
+}
+
+TEST(SampleMask, GridKernelEqualsTwinForEveryPatternSize) {
+  Random random(23);
+  for (int count = 1; count <= kMaxMaskSamples; ++count) {
+    const SamplePattern pattern = random_pattern(random, count);
+    GridCells grid;
+    for (int i = 0; i < 500; ++i) add_triangle(random, pattern, grid);
+    std::uint64_t samples = 0;
+    for (const std::uint32_t mask : grid.expected) samples += static_cast<std::uint64_t>(std::popcount(mask));
+    on_every_target([&] {
+      std::vector<std::uint32_t> masks(grid.cells.size(), 0xdeadbeef);
+      EXPECT_EQ(sample_masks(grid.edges.data(), grid.cells.data(), grid.cells.size(), pattern, masks.data()), samples);
+      ASSERT_EQ(masks, grid.expected) << count << " samples";
+    });
+  }
+}
+
+TEST(SampleMask, CellsOfAGridLieSideBySide) {
+  // x >= 640, y <= 320, and an edge that has everything inside; cells of 256 x 256.
+  SamplePattern pattern;
+  pattern.count = 3;
+  pattern.x = {128, 127, 128};
+  pattern.y = {64, 64, 65};
+  const GridEdges edges{{1, 0, 0}, {0, -1, 0}, {256, 0, 0}, {0, -256, 0}, {-640, 320, 0}};
+  const std::vector<GridCell> cells = {{0, 2, 1}, {0, 3, 1}, {0, 2, 0}, {0, 1, 1}};
+  on_every_target([&] {
+    std::vector<std::uint32_t> masks(4);
+    EXPECT_EQ(sample_masks(&edges, cells.data(), cells.size(), pattern, masks.data()), 5u);
+    EXPECT_EQ(masks, (std::vector<std::uint32_t>{0b001, 0b011, 0b101, 0b000}));
+  });
+}
+
 }  // namespace beampipe::sample_mask_test
