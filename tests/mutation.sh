@@ -68,7 +68,7 @@ mutants=(  # file | text as it is | broken
   'simd/position_mask.h|kDecidedByC = 1 << 30|kDecidedByC = 1 << 20'
   'simd/position_mask.h|in_row[s] - down|in_row[s] + down'
   'simd/position_mask.cpp|lesser(a, zero) + lesser(b, zero)|lesser(a, zero)'
-  'simd/cell_rows.cpp|hn::Set(d, edges[k].shallowest)|hn::Set(d, edges[k].deepest)'
+  'simd/quad_rows.cpp|corner + Reals(edges[k].shallowest)|corner + Reals(edges[k].deepest)'
   'stages/beam/windows.h|return nearest <= farthest|return nearest < farthest'
   'stages/beam/windows.cpp|(belongs ? 0 : 1)|(belongs ? 1 : 0)'
   'traces/closed_mesh.cpp|side->second ? 1 : -1|1'

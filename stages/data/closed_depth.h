@@ -52,6 +52,18 @@ class ClosedDepth {
     depth_[pixel] = farthest;
   }
 
+  // Is the triangle hidden in the pixel? If not and if it `closes` the pixel, it does. hides() and close() in one,
+  // without branches that depend on the depths.
+  bool hides_or_closes(std::int32_t x, std::int32_t y, float nearest, float farthest, bool closes) {
+    float& depth = depth_[tile_.index(x, y)];
+    const bool hidden = nearest > depth, closing = closes & !hidden, changes = closing & (farthest < depth);
+    ++work_.pixel_tests;
+    work_.hidden += hidden, work_.closings += closing, work_.changes += changes;
+    changes_ += changes & (depth == farthest_);
+    depth = changes ? farthest : depth;
+    return hidden;
+  }
+
   // Brings hides_everywhere up to date once every pixel has become nearer than the tile's depth.
   void refresh() {
     if (changes_ < depth_.size()) return;
