@@ -29,11 +29,12 @@ class TouchedPixels {
   // As traverse_quads() visits them.
   void add(std::int32_t left, std::int32_t top, const QuadRow& cells) {
     if (count_ + kMostCells > kBoundsBlock) finish();
+    const std::uint64_t full = is_opaque_ ? cells.full : 0;
     for (std::uint64_t bits = cells.touched; bits != 0; bits &= bits - 1) {
       const int bit = std::countr_zero(bits);
       pixels_.x[count_] = left + column_of(bit), pixels_.y[count_] = top + row_of(bit);
       quads_[count_] = next_quad_ + static_cast<std::uint32_t>(bit >> 2);
-      full_[count_] = (cells.full >> bit & 1) != 0 && is_opaque_;
+      full_[count_] = (full >> bit & 1) != 0;
       ++count_;
     }
     next_quad_ += kQuadsPerRow;
@@ -48,22 +49,20 @@ class TouchedPixels {
       std::fill_n(pixels_.nearest, count_, 0.0f), std::fill_n(pixels_.farthest, count_, 0.0f);
     }
     // Nothing branches on what is hidden, which no processor predicts.
-    const std::size_t before = out_.size();
-    std::size_t end = before;
-    out_.resize(before + count_);
+    find_hidden();
+    std::array<Pair, kBoundsBlock> pairs;
+    std::size_t kept = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      const std::int32_t x = pixels_.x[i], y = pixels_.y[i];
-      const float nearest = pixels_.nearest[i], farthest = pixels_.farthest[i];
-      out_[end] = {.triangle = index_,
-                   .quad = quads_[i],
-                   .x = x,
-                   .y = y,
-                   .full = full_[i],
-                   .nearest = nearest,
-                   .farthest = farthest};
-      end += !(closed_ && closed_->hides_or_closes(x, y, nearest, farthest, closes_ && full_[i]));
+      pairs[kept] = {.triangle = index_,
+                     .quad = quads_[i],
+                     .x = pixels_.x[i],
+                     .y = pixels_.y[i],
+                     .full = full_[i],
+                     .nearest = pixels_.nearest[i],
+                     .farthest = pixels_.farthest[i]};
+      kept += !hidden_[i];
     }
-    out_.resize(end);
+    out_.insert(out_.end(), pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(kept));
     touched_ += count_;
     count_ = 0;
   }
@@ -72,6 +71,18 @@ class TouchedPixels {
 
  private:
   static constexpr std::size_t kMostCells = 4 * kQuadsPerRow;  // that are added at once
+
+  void find_hidden() {
+    if (!closed_) {
+      std::fill_n(hidden_.begin(), count_, false);
+    } else if (closes_) {
+      for (std::size_t i = 0; i < count_; ++i)
+        hidden_[i] =
+            closed_->hides_or_closes(pixels_.x[i], pixels_.y[i], pixels_.nearest[i], pixels_.farthest[i], full_[i]);
+    } else {
+      closed_->hides(pixels_.x, pixels_.y, pixels_.nearest, count_, hidden_.data());
+    }
+  }
 
   ClosedDepth* closed_;
   bool has_bounds_, closes_;
@@ -85,7 +96,7 @@ class TouchedPixels {
   std::size_t count_ = 0;
   PixelBounds pixels_;
   std::array<std::uint32_t, kBoundsBlock> quads_;
-  std::array<bool, kBoundsBlock> full_;
+  std::array<bool, kBoundsBlock> full_, hidden_;
 };
 
 }  // namespace
