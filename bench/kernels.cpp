@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "simd/cell_rows.h"
 #include "simd/coverage.h"
 #include "simd/depth_range.h"
 #include "simd/depth_span.h"
@@ -14,6 +13,7 @@
 #include "simd/merge.h"
 #include "simd/plane_order.h"
 #include "simd/position_mask.h"
+#include "simd/quad_rows.h"
 #include "simd/vertex_transform.h"
 #include "simd/window_owners.h"
 
@@ -200,16 +200,18 @@ void masks_of_pixels(benchmark::State& state) {
 }
 BENCHMARK(masks_of_pixels)->Arg(32)->Arg(128)->Arg(256);
 
-void rows_of_cells(benchmark::State& state) {
-  const auto cells = static_cast<std::size_t>(state.range(0));
+void rows_of_quads(benchmark::State& state) {
+  const auto quads = static_cast<std::size_t>(state.range(0));
+  QuadRow rows[4];
   EdgeOverCells edges[3] = {{-4096, 512, -100, 512, -612}, {60'000, -300, 200, 200, -300}, {9'000, 77, 223, 300, 0}};
   for (auto _ : state) {
     edges[0].start -= 1;
-    benchmark::DoNotOptimize(cell_rows(edges, cells));
+    quad_rows(edges, quads, std::size(rows), rows);
+    benchmark::DoNotOptimize(rows);
   }
   count_items(state, 1);
 }
-BENCHMARK(rows_of_cells)->Arg(2)->Arg(8)->Arg(32);
+BENCHMARK(rows_of_quads)->Arg(1)->Arg(4)->Arg(16);
 
 // Windows of a given number of fragments, whose random masks cover half of the positions.
 void owners_of_windows(benchmark::State& state) {

@@ -18,7 +18,7 @@ struct Slopes {
 // The depth plane of a triangle: z at the anchor, which is one of its vertices, in pixels.
 template <class Real>
 struct AnchoredPlane {
-  Real z, dzdx, dzdy, anchor_x, anchor_y;
+  Real z{}, dzdx{}, dzdy{}, anchor_x{}, anchor_y{};
 };
 
 template <class Real>

@@ -40,17 +40,16 @@ void for_touched_tiles(const SetupTriangle& triangle, const TileGrid& grid, cons
   const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
   const CellRange range = touched_range(triangle, frame, CellGrid{});
   if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
-  const auto row_of = [&](std::size_t tile) { return static_cast<std::int32_t>(tile) / grid.columns; };
-  const EdgeSet set(triangle);
-  const std::int32_t last_row = std::min((range.y1 - 1) / grid.size, row_of(band.last - 1));
-  for (std::int32_t y = std::max(range.y0 / grid.size, row_of(band.first)); y <= last_row; ++y) {
-    std::int32_t left = range.x0 / grid.size, right = (range.x1 - 1) / grid.size;
-    if (left < right) {
-      const std::int64_t size = std::int64_t{grid.size} * kSubpixelUnits;
-      narrow(set, y * size, (y + 1) * size, size, left, right);
-    }
+  const std::int32_t first_column = grid.tiles_in(range.x0), last_column = grid.tiles_in(range.x1 - 1);
+  const std::int32_t last_row = grid.tiles_in(range.y1 - 1);
+  const std::int64_t size = std::int64_t{grid.size} * kSubpixelUnits;
+  for (std::int32_t y = grid.tiles_in(range.y0); y <= last_row; ++y) {
+    const auto row = static_cast<std::size_t>(y * grid.columns);
+    if (row + static_cast<std::size_t>(grid.columns) <= band.first || row >= band.last) continue;
+    std::int32_t left = first_column, right = last_column;
+    if (left < right) narrow(EdgeSet(triangle), y * size, (y + 1) * size, size, left, right);
     for (std::int32_t x = left; x <= right; ++x) {
-      const auto tile = static_cast<std::size_t>(y * grid.columns + x);
+      const std::size_t tile = row + static_cast<std::size_t>(x);
       if (tile >= band.first && tile < band.last) visit(tile);
     }
   }
@@ -74,13 +73,14 @@ struct Need {
 // touches. A side touches at most 2 pixels per pixel of its height and 2 per pixel of its width, plus 4 at corners, and
 // the heights and widths of all sides add up to twice the box's.
 std::uint64_t most_pixels(const SetupTriangle& triangle, std::uint64_t width, std::uint64_t height) {
+  const std::uint64_t pixels = width * height, on_border = 4 * (width + height) + 16;
+  if (pixels <= on_border) return pixels;
   const auto side = [&](int k) {
     return glm::dvec2(triangle.x[k] - triangle.x[0], triangle.y[k] - triangle.y[0]) / double{kSubpixelUnits};
   };
   const glm::dvec2 a = side(1), b = side(2);
   const double area = 0.5 * std::abs(a.x * b.y - a.y * b.x);
-  const double by_border = area + 4 * static_cast<double>(width + height) + 16;
-  return static_cast<std::uint64_t>(std::min(by_border, static_cast<double>(width * height)));
+  return static_cast<std::uint64_t>(std::min(area + static_cast<double>(on_border), static_cast<double>(pixels)));
 }
 
 // An upper bound, found quickly from the triangles' bounds, of what the frame needs as one band.
@@ -91,10 +91,11 @@ std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, 
     const SetupTriangle& triangle = triangles.triangles[i];
     const CellRange range = touched_range(triangle, frame, CellGrid{});
     if (range.x0 >= range.x1 || range.y0 >= range.y1) continue;
-    const auto width = static_cast<std::uint64_t>(range.x1 - range.x0),
-               height = static_cast<std::uint64_t>(range.y1 - range.y0), size = static_cast<std::uint64_t>(grid.size);
-    bytes += most_pixels(triangle, width, height) * pair_bytes.of(i) +
-             (width / size + 2) * (height / size + 2) * sizeof(std::uint32_t);
+    const std::int32_t width = range.x1 - range.x0, height = range.y1 - range.y0;
+    const auto tiles = static_cast<std::uint64_t>((grid.tiles_in(width) + 2) * (grid.tiles_in(height) + 2));
+    bytes += most_pixels(triangle, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)) *
+                 pair_bytes.of(i) +
+             tiles * sizeof(std::uint32_t);
   }
   return bytes;
 }
@@ -119,7 +120,8 @@ std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (1u 
 
 }  // namespace
 
-TileGrid::TileGrid(const Frame& frame, std::int32_t tile_size) : size(tile_size) {
+TileGrid::TileGrid(const Frame& frame, std::int32_t tile_size)
+    : size(tile_size), inverse_((std::uint64_t{1} << 32) / static_cast<std::uint64_t>(tile_size) + 1) {
   const auto width = static_cast<std::int32_t>(frame.width), height = static_cast<std::int32_t>(frame.height);
   columns = (width + size - 1) / size;
   for (std::int32_t y = 0; y < height; y += size)

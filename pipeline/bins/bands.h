@@ -19,6 +19,14 @@ struct TileGrid {
   std::vector<Tile> tiles;
 
   TileGrid(const Frame& frame, std::int32_t tile_size);
+
+  // pixels / size. `pixels` and size: 0..2^15; frames have up to 2^14 pixels on each side.
+  std::int32_t tiles_in(std::int32_t pixels) const {
+    return static_cast<std::int32_t>(static_cast<std::uint64_t>(pixels) * inverse_ >> 32);
+  }
+
+ private:
+  std::uint64_t inverse_;  // of the size, times 2^32: multiplication is much faster than division
 };
 
 struct Band {

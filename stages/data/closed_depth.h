@@ -31,6 +31,13 @@ class ClosedDepth {
     return hidden;
   }
 
+  // The same for several pixels.
+  void hides(const std::int32_t* x, const std::int32_t* y, const float* nearest, std::size_t count, bool* hidden) {
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < count; ++i) found += hidden[i] = nearest[i] > depth_[tile_.index(x[i], y[i])];
+    work_.pixel_tests += count, work_.hidden += found;
+  }
+
   // The same, for a stage that charges the test itself. `pixel`: index within the tile.
   bool is_hidden(std::size_t pixel, float nearest) const { return nearest > depth_[pixel]; }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "simd/depth_bounds.h"
 #include "simd/depth_range.h"
 #include "simd/merge.h"
 #include "simd/sample_pattern.h"
@@ -32,23 +33,10 @@ auto cell_plane(const ScreenDepthOf<Real>& depth, Real x, Real y) {
   return CellPlane<Float>{cell_depth(depth, x, y), to_float(depth.dzdx * unit), to_float(depth.dzdy * unit)};
 }
 
-template <class Float>
-struct DepthBounds {
-  Float nearest, farthest;
-};
-
 // Bounds of a triangle anywhere: the depths of its vertices.
 template <class Float>
 DepthBounds<Float> vertex_bounds(const Float z[3]) {
   return {lesser(lesser(z[0], z[1]), z[2]), greater(greater(z[0], z[1]), z[2])};
-}
-
-// Bounds within a pixel: the range of the plane over the whole pixel, limited to the depths of the vertices.
-template <class Float>
-DepthBounds<Float> pair_bounds(const DepthPlane<Float>& plane, const DepthBounds<Float>& vertices) {
-  const Float reach = reach_in_pixel(plane.dzdu, plane.dzdv);
-  return {lesser(greater(plane.z - reach, vertices.nearest), vertices.farthest),
-          greater(lesser(plane.z + reach, vertices.farthest), vertices.nearest)};
 }
 
 inline double to_double(float x) { return x; }

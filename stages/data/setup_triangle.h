@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "simd/depth_bounds.h"
 #include "stages/data/draw_placement.h"
 #include "stages/data/surface.h"
 
@@ -17,12 +18,9 @@ namespace beampipe {
 
 // A triangle's depth plane. Three vertices give the same bits in any order. Real is double or a number that counts.
 template <class Real>
-struct ScreenDepthOf {
-  Real z{}, dzdx{}, dzdy{};     // at the anchor; slopes per pixel
-  Real anchor_x{}, anchor_y{};  // pixels
-
+struct ScreenDepthOf : AnchoredPlane<Real> {
   // Depth at (x, y), in pixels.
-  Real at(Real x, Real y) const { return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y); }
+  Real at(Real x, Real y) const { return depth_at(*this, x, y); }
 };
 using ScreenDepth = ScreenDepthOf<double>;
 

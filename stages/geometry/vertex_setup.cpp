@@ -307,36 +307,60 @@ class TriangleSetup {
     }
   }
 
-  // After the last triangle, or when a block is full.
-  void finish_block() {
-    const std::size_t count = block_.count, first = out_.triangles.size() - count;
-    depth_planes(block_.screen, count, block_.planes);
-    for (std::size_t i = 0; i < count; ++i) {
-      SetupTriangle& triangle = out_.triangles[first + i];
-      triangle.depth = {block_.planes.z[i], block_.planes.dzdx[i], block_.planes.dzdy[i], block_.planes.anchor_x[i],
-                        block_.planes.anchor_y[i]};
-      if (screen_.placement.has_bias()) add_bias(triangle);
-    }
-    if (block_.is_lit) {
-      unit_normals(to_world_, block_.mesh, count, block_.normals);
-      for (std::size_t i = 0; i < count; ++i) {
-        FlatAttributes& flat = out_.attributes[first + i];
-        if (flat.lit) flat.normal = {block_.normals.x[i], block_.normals.y[i], block_.normals.z[i]};
-      }
-    }
-    block_.count = 0;
-    block_.is_lit = false;
-  }
-
-  // The last triangles of `out_`, whose depth planes and normals are missing.
+  // Triangles on the screen that are set up together.
   struct Block {
+    struct Triangle {
+      std::size_t number;  // in the mesh
+      std::uint32_t material;
+      bool front;
+      std::array<const ProjectedVertex*, 3> corners;  // in the order of SetupTriangle
+    };
+
     std::size_t count = 0;
-    bool is_lit = false;  // has one of them a normal?
+    std::array<Triangle, kSetupBlock> triangles;
     ScreenCorners screen{};
     MeshCorners mesh{};
     DepthPlaneColumns planes;
     NormalColumns normals;
   };
+
+  // After the last triangle, when a block is full, or before its corners go.
+  void finish_block() {
+    if (block_.count == 0) return;
+    const std::size_t first = out_.triangles.size(), end = first + block_.count;
+    out_.triangles.resize(end), out_.attributes.resize(end);
+    add_triangles(out_.triangles.data() + first);
+    add_attributes(out_.attributes.data() + first);
+    out_.draws.resize(end, draw_index_);
+    if (numbers_triangles_)
+      for (std::size_t i = 0; i < block_.count; ++i)
+        out_.trace_triangles.push_back(static_cast<std::uint32_t>(block_.triangles[i].number));
+    block_.count = 0;
+  }
+
+  void add_triangles(SetupTriangle* out) {
+    ScreenCorners& screen = block_.screen;
+    for (std::size_t i = 0; i < block_.count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const ScreenVertex<double>& vertex = block_.triangles[i].corners[k]->screen;
+        screen.x[k][i] = vertex.x, screen.y[k][i] = vertex.y, screen.z[k][i] = vertex.z;
+      }
+    }
+    if (is_placed_) place_depths();
+    depth_planes(screen, block_.count, block_.planes);
+    const DepthPlaneColumns& planes = block_.planes;
+    for (std::size_t i = 0; i < block_.count; ++i) {
+      SetupTriangle& triangle = out[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const ProjectedVertex& corner = *block_.triangles[i].corners[k];
+        triangle.x[k] = corner.x, triangle.y[k] = corner.y;
+        triangle.vertex_z[k] = static_cast<float>(screen.z[k][i]);
+      }
+      triangle.depth = {planes.z[i], planes.dzdx[i], planes.dzdy[i], planes.anchor_x[i], planes.anchor_y[i]};
+      triangle.front = block_.triangles[i].front;
+      if (screen_.placement.has_bias()) add_bias(triangle);
+    }
+  }
 
   // A triangle of a draw whose state says where it is cut.
   void add_cut(std::size_t t, const std::array<const ProjectedVertex*, 3>& v) {
@@ -393,6 +417,7 @@ class TriangleSetup {
     for (std::size_t i = 2; i < polygon.size(); ++i)
       if (polygon[0].w > 0 && polygon[i - 1].w > 0 && polygon[i].w > 0)
         add_on_screen(t, on_screen(0), on_screen(i - 1), on_screen(i));
+    finish_block();
   }
 
   // A crossing point may be beyond its plane by a rounding error.
@@ -411,31 +436,19 @@ class TriangleSetup {
     const bool front = area2 < 0;  // counter-clockwise with y up
     if (draw_.cull == (front != draw_.state.front_is_clockwise ? Cull::front : Cull::back)) return;
     if (material != kNoMaterial && !materials_[material].double_sided && shows_back(front)) return;
-    std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
-    if (is_placed_) place_depths(t, p);
-    SetupTriangle& triangle = out_.triangles.emplace_back();
-    const std::array<const ProjectedVertex*, 3> corners = {&a, &b, &c};
-    const std::array<std::size_t, 3> turned = {0, front ? 2u : 1u, front ? 1u : 2u};
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle.x[k] = corners[turned[k]]->x, triangle.y[k] = corners[turned[k]]->y;
-      triangle.vertex_z[k] = static_cast<float>(p[turned[k]].z);
-      block_.screen.x[k][block_.count] = p[k].x, block_.screen.y[k][block_.count] = p[k].y;
-      block_.screen.z[k][block_.count] = p[k].z;
-    }
-    triangle.front = front;
-    add_attributes(t, material, front);
-    out_.draws.push_back(draw_index_);
-    if (numbers_triangles_) out_.trace_triangles.push_back(static_cast<std::uint32_t>(t));
+    block_.triangles[block_.count] = {t, material, front, {&a, front ? &c : &b, front ? &b : &c}};
     if (has_surfaces()) out_.surfaces.push_back(surface(t, material, front, {first, second, third}));
     if (++block_.count == kSetupBlock) finish_block();
   }
 
   // From the draw's own depth, -1..0, to the frame's.
-  void place_depths(std::size_t t, std::array<ScreenVertex<double>, 3>& p) {
+  void place_depths() {
     const DrawPlacement& to = screen_.placement;
-    const double offset = to.depth_offset - to.layer_step * static_cast<double>(t);
-    for (ScreenVertex<double>& vertex : p) vertex.z = to.depth_scale * vertex.z + offset;
-    ++work_.placed;
+    for (std::size_t i = 0; i < block_.count; ++i) {
+      const double offset = to.depth_offset - to.layer_step * static_cast<double>(block_.triangles[i].number);
+      for (auto& z : block_.screen.z) z[i] = to.depth_scale * z[i] + offset;
+    }
+    work_.placed += block_.count;
   }
 
   // Limited, so that draws stay in their interval of depths.
@@ -490,27 +503,34 @@ class TriangleSetup {
     return surface;
   }
 
-  // All but the normal.
-  void add_attributes(std::size_t t, std::uint32_t material, bool front) {
-    FlatAttributes& flat = out_.attributes.emplace_back();
-    flat.lit = draw_.shading == Shading::lambert;
-    flat.normal = glm::vec3(0);
-    if (material == kNoMaterial) {
-      flat.kd = draw_.kd.value_or(mesh_.colors[t]);
-    } else {
-      flat.kd = glm::vec3(materials_[material].base_color);
-      flat.lit = !materials_[material].unlit && mesh_.normals.empty();
+  void add_attributes(FlatAttributes* out) {
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < block_.count; ++i) {
+      const auto& [t, material, front, corners] = block_.triangles[i];
+      FlatAttributes& flat = out[i];
+      flat.lit = draw_.shading == Shading::lambert;
+      flat.normal = glm::vec3(0);
+      if (material == kNoMaterial) {
+        flat.kd = draw_.kd.value_or(mesh_.colors[t]);
+      } else {
+        flat.kd = glm::vec3(materials_[material].base_color);
+        flat.lit = !materials_[material].unlit && mesh_.normals.empty();
+      }
+      if (!flat.lit) continue;
+      const glm::uvec3& index = mesh_.triangles[t];
+      for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 p = position_of(mesh_, index[k]);
+        block_.mesh.x[k][i] = p.x, block_.mesh.y[k][i] = p.y, block_.mesh.z[k][i] = p.z;
+      }
+      block_.mesh.side[i] = front != screen_.mirrored ? 1.0 : -1.0;
+      ++lit;
     }
-    if (!flat.lit) return;
-    ++work_.normals;
-    block_.is_lit = true;
-    const glm::uvec3& index = mesh_.triangles[t];
-    for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 p = position_of(mesh_, index[k]);
-      block_.mesh.x[k][block_.count] = p.x, block_.mesh.y[k][block_.count] = p.y;
-      block_.mesh.z[k][block_.count] = p.z;
-    }
-    block_.mesh.side[block_.count] = front != screen_.mirrored ? 1.0 : -1.0;
+    work_.normals += lit;
+    if (lit == 0) return;
+    unit_normals(to_world_, block_.mesh, block_.count, block_.normals);
+    const NormalColumns& normals = block_.normals;
+    for (std::size_t i = 0; i < block_.count; ++i)
+      if (out[i].lit) out[i].normal = {normals.x[i], normals.y[i], normals.z[i]};
   }
 
   const View& view_;

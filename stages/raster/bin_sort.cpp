@@ -19,20 +19,25 @@ struct Entry {
   std::uint32_t key, place;  // place: in the list
 };
 
-// By key_of(triangle).
+// By key_of(triangle). The triangles of a bin are close to each other, so the upper digits of most keys are equal.
 template <class KeyOf>
 std::vector<Entry> sorted(const SetupTriangles& triangles, const TriangleList& list, KeyOf&& key_of) {
   std::vector<Entry> entries(list.size()), other(list.size());
   constexpr std::size_t kAhead = 12;  // triangles
+  std::uint32_t least = list.empty() ? 0 : kLastKey, most = 0;
   for (std::uint32_t i = 0; i < list.size(); ++i) {
     if (i + kAhead < list.size()) prefetch(triangles.triangles[list[i + kAhead]]);
     entries[i] = {key_of(triangles.triangles[list[i]]), i};
+    least = std::min(least, entries[i].key), most = std::max(most, entries[i].key);
   }
-  for (int shift = 0; shift < 24; shift += 8) {
-    std::uint32_t first[257] = {};
-    for (const Entry& entry : entries) ++first[(entry.key >> shift & 0xff) + 1];
-    for (int digit = 0; digit < 256; ++digit) first[digit + 1] += first[digit];
-    for (const Entry& entry : entries) other[first[entry.key >> shift & 0xff]++] = entry;
+  constexpr int kDigitBits = 9;
+  constexpr std::uint32_t kDigits = 1u << kDigitBits;
+  for (int shift = 0; (most - least) >> shift != 0; shift += kDigitBits) {
+    const auto digit_of = [&](const Entry& entry) { return (entry.key - least) >> shift & (kDigits - 1); };
+    std::uint32_t first[kDigits + 1] = {};
+    for (const Entry& entry : entries) ++first[digit_of(entry) + 1];
+    for (std::uint32_t digit = 0; digit < kDigits; ++digit) first[digit + 1] += first[digit];
+    for (const Entry& entry : entries) other[first[digit_of(entry)]++] = entry;
     entries.swap(other);
   }
   return entries;
@@ -72,11 +77,11 @@ OrderedList bin_sort(const SetupTriangles& triangles, const TriangleList& list, 
   const std::vector<Entry> entries =
       sorted(triangles, list, [&](const SetupTriangle& triangle) { return sort_key(nearest_in(triangle, tile)); });
   OrderedList ordered;
-  ordered.triangles.reserve(list.size());
-  ordered.watermarks.reserve(list.size());
-  for (const Entry& entry : entries) {
-    ordered.triangles.push_back(list[entry.place]);
-    ordered.watermarks.push_back(nearest_of(entry.key));
+  ordered.triangles.resize(list.size());
+  ordered.watermarks.resize(list.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    ordered.triangles[i] = list[entries[i].place];
+    ordered.watermarks[i] = nearest_of(entries[i].key);
   }
   static const UnitCost of_key = nearest_key_cost();
   charge_bin_sort(list.size(), of_key, counters);

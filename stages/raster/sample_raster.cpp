@@ -24,21 +24,6 @@ GridEdges grid_edges(const EdgeSet& set, const CellGrid& grid) {
   return edges;
 }
 
-// Eight columns of two rows of cells, quad by quad: bit 4 q + 2 j + i is cell (2 q + i, j).
-struct QuadCells {
-  std::uint32_t touched, full;
-};
-
-QuadCells quads_of(const CellRow (&rows)[2], int first_column) {
-  const auto columns = [&](std::uint32_t row) { return std::uint64_t{row >> first_column & 0xff}; };
-  std::uint64_t bits = columns(rows[0].touched) | columns(rows[1].touched) << 16 | columns(rows[0].full) << 32 |
-                       columns(rows[1].full) << 48;
-  bits = (bits | bits << 4) & 0x0f0f0f0f0f0f0f0f;  // pairs of bits move apart
-  bits = (bits | bits << 2) & 0x3333333333333333;
-  bits |= bits >> 14;
-  return {static_cast<std::uint32_t>(bits & 0xffff), static_cast<std::uint32_t>(bits >> 32 & 0xffff)};
-}
-
 // The fragments of some triangles, before the samples of their partial cells are tested: in blocks, which stay in the
 // nearest cache.
 class FragmentBlock {
@@ -58,13 +43,27 @@ class FragmentBlock {
     triangle_ = triangle, depths_ = depths, is_opaque_ = is_opaque;
   }
 
-  // As traverse_rows() visits them.
-  void add(std::int32_t left, std::int32_t top, const CellRow (&rows)[2]) {
-    const std::uint32_t columns = rows[0].touched | rows[1].touched;
-    for (int first = 0; first < kCellsPerRow && columns >> first != 0; first += 8) {
-      add(left + first, top, quads_of(rows, first));
-      quad_ += 4;
+  // As traverse_quads() visits them. Nothing branches on what is full or hidden, which no processor predicts.
+  void add(std::int32_t left, std::int32_t top, const QuadRow& cells) {
+    if (count_ + 4 * kQuadsPerRow > kFragments) finish();
+    const std::uint32_t edges = static_cast<std::uint32_t>(triangles_ - 1);
+    std::size_t count = count_, partial = partial_, tests = 0;
+    for (std::uint64_t bits = cells.touched; bits != 0; bits &= bits - 1, ++tests) {
+      const int bit = std::countr_zero(bits);
+      const std::int32_t x = left + column_of(bit), y = top + row_of(bit);
+      const bool full = (cells.full >> bit & 1) != 0;
+      const bool hidden =
+          closed_ && closed_->hides_or_closes(x, y, depths_.nearest, depths_.farthest, full & is_opaque_);
+      fragments_[count] = {triangle_, quad_ + static_cast<std::uint32_t>(bit >> 2), x, y, every_sample_};
+      cells_[partial] = {edges, x, y};
+      fragment_[partial] = static_cast<std::uint32_t>(count);
+      partial += !full & !hidden;
+      count += !hidden;
     }
+    quad_ += kQuadsPerRow;
+    const std::size_t visible = count - count_, full = visible - (partial - partial_);
+    count_ = count, partial_ = partial;
+    if (closed_) closed_->count(tests, tests - visible, is_opaque_ ? full : 0);
   }
 
   // Tests the samples of the partial cells, and hands on the fragments that have any.
@@ -86,29 +85,7 @@ class FragmentBlock {
   }
 
  private:
-  static constexpr std::size_t kTriangles = 64, kFragments = 256, kGroup = 16;
-
-  // Nothing branches on what is full or hidden, which no processor predicts.
-  void add(std::int32_t left, std::int32_t top, const QuadCells& cells) {
-    if (count_ + kGroup > kFragments) finish();
-    const std::size_t count_before = count_, partial_before = partial_;
-    std::size_t tests = 0;
-    for (std::uint32_t bits = cells.touched; bits != 0; bits &= bits - 1, ++tests) {
-      const int bit = std::countr_zero(bits);
-      const std::int32_t x = left + (bit >> 2) * 2 + (bit & 1), y = top + (bit >> 1 & 1);
-      const bool full = (cells.full >> bit & 1) != 0;
-      const bool hidden =
-          closed_ && closed_->hides_or_closes(x, y, depths_.nearest, depths_.farthest, full & is_opaque_);
-      fragments_[count_] = {triangle_, quad_ + static_cast<std::uint32_t>(bit >> 2), x, y, every_sample_};
-      cells_[partial_] = {static_cast<std::uint32_t>(triangles_ - 1), x, y};
-      fragment_[partial_] = static_cast<std::uint32_t>(count_);
-      partial_ += !full & !hidden;
-      count_ += !hidden;
-    }
-    if (!closed_) return;
-    const std::size_t visible = count_ - count_before, full = visible - (partial_ - partial_before);
-    closed_->count(tests, tests - visible, is_opaque_ ? full : 0);
-  }
+  static constexpr std::size_t kTriangles = 64, kFragments = 256;
 
   const Sampling& sampling_;
   std::uint32_t every_sample_;
@@ -144,8 +121,8 @@ void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCo
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
     const EdgeSet set(triangle);
     block.start(index, set, depths, in.triangles.is_opaque(index));
-    traverse_rows(triangle, set, traversal,
-                  [&](std::int32_t left, std::int32_t top, const CellRow(&rows)[2]) { block.add(left, top, rows); });
+    traverse_quads(triangle, set, traversal,
+                   [&](std::int32_t x, std::int32_t y, const QuadRow& cells) { block.add(x, y, cells); });
     if (closed) closed->refresh();
   }
   block.finish();

@@ -10,7 +10,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "simd/cell_rows.h"
+#include "simd/quad_rows.h"
 #include "stages/data/sample_fragment.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
@@ -60,24 +60,27 @@ struct Traversal {
   CellGrid grid = {};
   FullMeans meaning = FullMeans::area;
   TraversalCounts counts = {};
-  std::uint32_t quad = 0;  // number of the next 2x2 quad
+  std::uint32_t quad = 0;  // number of the next row's first 2x2 quad
 };
 
-// What cell_rows needs of an edge, except for the value where the first row starts.
-inline EdgeOverCells edge_over_cells(const Edge& edge, const CellGrid& grid, FullMeans meaning) {
-  const std::int64_t right = std::int64_t{edge.a} * grid.cell_width(), down = std::int64_t{edge.b} * grid.cell_height();
-  const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
-  EdgeOverCells over{};
-  over.step = static_cast<double>(right), over.down = static_cast<double>(down);
-  over.deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
-  over.shallowest = static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
-  return over;
+// Edge k over the cells from the one whose upper left corner is (x, y) on, in 1/256 px. The numbers are integers that
+// doubles hold.
+inline EdgeOverCells edge_over_cells(const SetupTriangle& triangle, const Edge& edge, std::size_t k, std::int32_t x,
+                                     std::int32_t y, const CellGrid& grid, FullMeans meaning) {
+  const double a = edge.a, b = edge.b;
+  const double right = a * grid.cell_width(), down = b * grid.cell_height();
+  const double not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
+  return {.start = a * (x - triangle.x[k]) + b * (y - triangle.y[k]),
+          .step = right,
+          .down = down,
+          .deepest = std::max(right, 0.0) + std::max(down, 0.0),
+          .shallowest = std::min(right, 0.0) + std::min(down, 0.0) - not_owned};
 }
 
-// Calls visit(left, y, rows) for two rows at a time of at most kCellsPerRow cells that the triangle may touch: bit i of
-// rows[j] is cell (left + i, y + j). `left` and `y` are even. `set`: the triangle's edges.
+// Calls visit(x, y, cells) for rows of quads that the triangle may touch, from top to bottom and from left to right.
+// (x, y) is the upper left cell of the first quad. `set`: the triangle's edges.
 template <class Visit>
-void traverse_rows(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
+void traverse_quads(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
   const CellGrid& grid = traversal.grid;
   const CellRange range = touched_range(triangle, traversal.tile, grid);
   TraversalCounts& counts = traversal.counts;
@@ -86,38 +89,48 @@ void traverse_rows(const SetupTriangle& triangle, const EdgeSet& set, Traversal&
   ++counts.traversals;
   counts.cells_tested +=
       static_cast<std::uint64_t>(range.x1 - range.x0) * static_cast<std::uint64_t>(range.y1 - range.y0);
-  const std::int64_t w = grid.cell_width(), h = grid.cell_height();
-  EdgeOverCells edges[3];
-  for (std::size_t k = 0; k < 3; ++k) edges[k] = edge_over_cells(set.edges[k], grid, traversal.meaning);
-  for (std::int32_t y = range.y0 & ~1; y < range.y1; y += 2) {
-    for (std::int32_t left = range.x0 & ~1; left < range.x1; left += kCellsPerRow) {
-      const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start inside a quad
-      for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, y * h));
-      auto [rows] = cell_rows(edges, static_cast<std::size_t>(std::min(range.x1 - left, kCellsPerRow)));
-      for (std::int32_t j = 0; j < 2; ++j) rows[j].touched &= y + j >= range.y0 && y + j < range.y1 ? inside : 0;
-      visit(left, y, rows);
+  constexpr std::int32_t kCells = 2 * kQuadsPerRow, kRows = 16;
+  constexpr std::uint64_t kAll = ~std::uint64_t{0}, kUpper = 0x3333333333333333, kLower = ~kUpper;
+  constexpr std::uint64_t kFirstColumn = 0b0101, kLastColumn = 0b1010;  // of a quad
+  QuadRow rows[kRows];
+  const std::int32_t x0 = range.x0 & ~1, y0 = range.y0 & ~1;  // the range may start and end inside a quad
+  const std::int32_t at_once = range.x1 - x0 <= kCells ? kRows : 1;
+  for (std::int32_t top = y0; top < range.y1; top += 2 * at_once) {
+    for (std::int32_t left = x0; left < range.x1; left += kCells) {
+      EdgeOverCells edges[3];
+      for (std::size_t k = 0; k < 3; ++k)
+        edges[k] = edge_over_cells(triangle, set.edges[k], k, left * grid.cell_width(), top * grid.cell_height(), grid,
+                                   traversal.meaning);
+      const std::int32_t quads = std::min((range.x1 - left + 1) / 2, kQuadsPerRow);
+      const std::int32_t count = std::min((range.y1 - top + 1) / 2, at_once);
+      quad_rows(edges, static_cast<std::size_t>(quads), static_cast<std::size_t>(count), rows);
+      const std::uint64_t sides = (left < range.x0 ? ~kFirstColumn : kAll) &
+                                  (left + 2 * quads > range.x1 ? ~(kLastColumn << 4 * (quads - 1)) : kAll);
+      for (std::int32_t row = 0; row < count; ++row) {
+        const std::int32_t y = top + 2 * row;
+        const std::uint64_t inside = sides & (y < range.y0 ? kLower : kAll) & (y + 1 == range.y1 ? kUpper : kAll);
+        visit(left, y, QuadRow{rows[row].touched & inside, rows[row].full & inside});
+      }
     }
   }
 }
 
+// Where cell number `bit` of a row of quads is, from the first one.
+inline std::int32_t column_of(int bit) { return (bit >> 2) * 2 + (bit & 1); }
+inline std::int32_t row_of(int bit) { return bit >> 1 & 1; }
+
 // Calls visit(x, y, quad, full) for every cell that the triangle touches, one 2x2 quad after the other. `quad`: the
-// same number for all cells in one quad. `full`: the triangle covers the whole cell.
+// same number for all cells in one quad. `full`: the triangle covers the whole cell. `set`: the triangle's edges.
 template <class Visit>
 void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
-  traverse_rows(triangle, set, traversal, [&](std::int32_t left, std::int32_t top, const CellRow(&rows)[2]) {
-    const std::uint32_t columns = rows[0].touched | rows[1].touched;
-    constexpr std::uint32_t kEven = 0x55555555;
-    for (std::uint32_t quads = (columns | columns >> 1) & kEven; quads != 0; quads &= quads - 1) {
-      const int first = std::countr_zero(quads);
-      for (std::int32_t y = 0; y < 2; ++y) {
-        for (int x = first; x < first + 2; ++x) {
-          if ((rows[y].touched >> x & 1) == 0) continue;
-          ++traversal.counts.cells_touched;
-          visit(left + x, top + y, traversal.quad, (rows[y].full >> x & 1) != 0);
-        }
-      }
-      ++traversal.quad;
+  traverse_quads(triangle, set, traversal, [&](std::int32_t x, std::int32_t y, const QuadRow& cells) {
+    for (std::uint64_t bits = cells.touched; bits != 0; bits &= bits - 1) {
+      const int bit = std::countr_zero(bits);
+      ++traversal.counts.cells_touched;
+      visit(x + column_of(bit), y + row_of(bit), traversal.quad + static_cast<std::uint32_t>(bit >> 2),
+            (cells.full >> bit & 1) != 0);
     }
+    traversal.quad += kQuadsPerRow;
   });
 }
 

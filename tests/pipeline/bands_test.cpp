@@ -71,6 +71,18 @@ TEST(Bands, HoldAsManyTilesAsFit) {
             "the memory limit of 1 MiB is too low: the 100 triangles at pixels 0,0 to 31,31 need 1 MiB at once");
 }
 
+TEST(Bands, PixelsAreDividedIntoTiles) {
+  Frame frame;
+  frame.width = frame.height = 2;
+  for (std::int32_t size = 1; size <= 16384; ++size) {
+    const TileGrid grid(frame, size);
+    for (std::int32_t tile = 0; tile * size <= 16384; ++tile) {
+      ASSERT_EQ(grid.tiles_in(tile * size), tile) << size;
+      ASSERT_EQ(grid.tiles_in(tile * size + size - 1), tile) << size;
+    }
+  }
+}
+
 TEST(Bands, ListsAreThoseOfTheWholeFrame) {
   const Trace trace = random_trace(150, 70, 400, 3);
   const SetupTriangles triangles = setup_of(trace);

@@ -101,6 +101,21 @@ TEST(BinSort, NearTrianglesComeFirstAndEqualKeysInPrimitiveOrder) {
   EXPECT_GT(ties, 1000);
 }
 
+// However much of a key is the same in the whole list.
+TEST(BinSort, ListsOfCloseTrianglesAreSortedToo) {
+  Random random(225);
+  for (int power = 0; power <= 24; ++power) {
+    std::vector<float> depths;
+    for (int i = 0; i < 300; ++i) depths.push_back(-0.75f - random.real32(-0.25f, 0.25f) * std::ldexp(1.0f, -power));
+    StageCounters counters;
+    const SetupTriangles triangles = flat_triangles(depths);
+    const OrderedList ordered = bin_sort(triangles, all_of(triangles), {0, 0, 16, 16}, counters);
+    TriangleList expected = all_of(triangles);
+    std::ranges::stable_sort(expected, {}, [&](std::uint32_t triangle) { return sort_key(depths[triangle]); });
+    ASSERT_EQ(ordered.triangles, expected) << power;
+  }
+}
+
 TEST(BinSort, OfAnEmptyList) {
   StageCounters counters;
   const OrderedList ordered = bin_sort({}, {}, {0, 0, 16, 16}, counters);

@@ -102,6 +102,37 @@ TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
   }
 }
 
+// Triangles that are wider and higher than what is tested at once, in a tile that begins and ends anywhere on even
+// pixels.
+TEST(ConservativeRaster, FindsThePixelsOfLargeTriangles) {
+  Random random(104);
+  constexpr Tile kTile{6, 4, 106, 98};
+  const auto coordinate = [&] {
+    return random.one_in(2) ? random.int32(-10, 120) * 256 : random.int32(-10 * 256, 120 * 256);
+  };
+  SetupTriangles triangles;
+  while (triangles.triangles.size() < 100)
+    add_triangle(triangles, {coordinate(), coordinate()}, {coordinate(), coordinate()}, {coordinate(), coordinate()});
+  std::set<TouchedPair> expected;
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
+    for (std::int32_t y = kTile.y0; y < kTile.y1; ++y)
+      for (std::int32_t x = kTile.x0; x < kTile.x1; ++x)
+        if (const Truth found = truth(triangles.triangles[i], x, y); found.touched)
+          expected.emplace(i, x, y, found.full);
+  const Raster raster = rasterize(triangles, kTile);
+  EXPECT_EQ(raster.set().size(), raster.pairs.size()) << "a pixel occurs twice";
+  EXPECT_TRUE(raster.set() == expected);
+}
+
+// The quads of a triangle come row by row, and the pixels of a quad as well.
+TEST(ConservativeRaster, PairsAreInOrder) {
+  Random random(105);
+  const SetupTriangles triangles = random_triangles(random, 2'000);
+  const auto place = [](const Pair& p) { return std::tuple(p.triangle, p.y >> 1, p.x >> 1, p.y & 1, p.x & 1); };
+  const std::vector<Pair> pairs = rasterize(triangles, {0, 0, 100, 60}).pairs;
+  for (std::size_t i = 1; i < pairs.size(); ++i) ASSERT_LT(place(pairs[i - 1]), place(pairs[i])) << i;
+}
+
 // Pixels have the same quad number if and only if they have the same triangle and 2x2 quad, and then they are
 // consecutive.
 TEST(ConservativeRaster, QuadNumbersNameQuads) {
