@@ -30,7 +30,7 @@ std::vector<Entry> sorted(const SetupTriangles& triangles, const TriangleList& l
     entries[i] = {key_of(triangles.triangles[list[i]]), i};
     least = std::min(least, entries[i].key), most = std::max(most, entries[i].key);
   }
-  constexpr int kDigitBits = 9;
+  constexpr int kDigitBits = 8;
   constexpr std::uint32_t kDigits = 1u << kDigitBits;
   for (int shift = 0; (most - least) >> shift != 0; shift += kDigitBits) {
     const auto digit_of = [&](const Entry& entry) { return (entry.key - least) >> shift & (kDigits - 1); };
