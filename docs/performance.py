@@ -6,6 +6,7 @@ usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
        docs/performance.py items PROGRAM [--runs N] TRACE...
        docs/performance.py memory PROGRAM [--runs N] TRACE...
        docs/performance.py textures PROGRAM [--runs N] TRACE...
+       docs/performance.py peers PROGRAM FOLDER [--runs N] TRACE...
        docs/performance.py growth PROGRAM PLOT.svg
 
 PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that other work of the
@@ -13,6 +14,8 @@ machine affects all of them alike. A time is the least of the runs, in `growth` 
 `growth` makes its own traces, and draws the plot with gnuplot. `items` prints nanoseconds per item of each stage of
 `beam`, on one thread. `memory` prints what modelling memory costs: a frame's time with the model ÷ that without.
 `textures` prints what materials cost: a frame's time ÷ that of the same frame with one flat colour for each draw.
+`peers` compares with other renderers, which FOLDER has: peer_gl (llvmpipe) and, if it is there, peer_embree draw the
+triangles of `beampipe export-soup` and print JSON with the least time of a frame, "ms_frame_min".
 """
 import argparse
 import contextlib
@@ -157,6 +160,38 @@ def print_textures(arguments):
         sys.stdout.flush()
 
 
+def peer_time(peer, soup, samples):
+    """Least milliseconds of a frame, or None if there is no such program."""
+    if not os.path.exists(peer):
+        return None
+    answer = subprocess.run([peer, soup, f"{soup}.pfm", "--samples", str(samples), "--threads", "1", "--runs", "3"],
+                            check=True, stdout=subprocess.PIPE, text=True)
+    return json.loads(answer.stdout)["ms_frame_min"]
+
+
+def print_peers(arguments):
+    specs = ["beam", "msaa:4", "msaa:256"]
+    peers = [("peer_gl", 8, "beam"), ("peer_gl", 64, "beam"), ("peer_gl", 256, "beam"), ("peer_embree", 256, "beam"),
+             ("peer_gl", 4, "msaa:4"), ("peer_gl", 256, "msaa:256")]
+    names = {"peer_gl": "llvmpipe", "peer_embree": "Embree"}
+    measure.print_head("scene", "`beam` ms", *(f"{names[peer]} {samples} ÷ `{spec}`" for peer, samples, spec in peers))
+    for trace in arguments.traces:
+        least = {}
+        with tempfile.TemporaryDirectory() as folder:
+            soup = f"{folder}/frame.soup"
+            subprocess.run([arguments.program, "export-soup", trace, "-o", soup], check=True, stdout=subprocess.DEVNULL)
+            for _ in range(arguments.runs):  # in turn
+                found = {spec: times[1] for spec, times in frame_times(arguments.program, trace, specs, 3, 1).items()}
+                for peer, samples in dict.fromkeys(peer[:2] for peer in peers):
+                    found[peer, samples] = peer_time(os.path.join(arguments.peers, peer), soup, samples)
+                for what, time in found.items():
+                    least[what] = min(least.get(what, time), time) if time else None
+        cells = [f"{least[peer, samples] / least[spec]:.2f}" if least[peer, samples] else ""
+                 for peer, samples, spec in peers]
+        measure.print_row(name_of(trace), f"{least['beam']:.0f}", *cells)
+        sys.stdout.flush()
+
+
 def name_of(trace):
     return os.path.basename(trace).removesuffix(".json")
 
@@ -234,9 +269,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
     for name, action in (("ratios", print_ratios), ("threads", print_threads), ("items", print_items),
-                         ("memory", print_memory), ("textures", print_textures)):
+                         ("memory", print_memory), ("textures", print_textures), ("peers", print_peers)):
         command = commands.add_parser(name)
         command.add_argument("program")
+        if name == "peers":
+            command.add_argument("peers", metavar="folder")
         command.add_argument("traces", nargs="+")
         command.add_argument("--runs", type=int, default=5)
         if name == "ratios":

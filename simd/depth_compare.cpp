@@ -14,8 +14,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The pattern's positions as floats.
-struct Positions {
-  explicit Positions(const SamplePattern& pattern) {
+struct PatternPositions {
+  explicit PatternPositions(const SamplePattern& pattern) {
     for (std::size_t s = 0; s < kMaxMaskSamples; ++s)
       x[s] = static_cast<float>(pattern.x[s]), y[s] = static_cast<float>(pattern.y[s]);
   }
@@ -24,7 +24,7 @@ struct Positions {
 
 // The depth of samples s, s + 1, ... of a cell.
 template <class D>
-HWY_INLINE hn::Vec<D> depths_at(D d, const CellPlane<float>& plane, const Positions& positions, std::size_t s) {
+HWY_INLINE hn::Vec<D> depths_at(D d, const CellPlane<float>& plane, const PatternPositions& positions, std::size_t s) {
   const auto x = hn::Load(d, positions.x + s), y = hn::Load(d, positions.y + s);
   return hn::Add(hn::Add(hn::Set(d, plane.z), hn::Mul(hn::Set(d, plane.dzdx), x)), hn::Mul(hn::Set(d, plane.dzdy), y));
 }
@@ -71,7 +71,7 @@ HWY_INLINE SampleCounts each_cell(SampleAccess* items, const CellPlane<float>* p
 SampleCounts depth_test_kernel(SampleAccess* items, const CellPlane<float>* planes, std::size_t count,
                                const SamplePattern& pattern, const SampleSurface& surface) {
   const auto samples = static_cast<std::size_t>(pattern.count);
-  const Positions positions(pattern);
+  const PatternPositions positions(pattern);
   float* const depths = surface.depth;
   std::uint32_t* const triangles = surface.triangle;
   // A masked store would be slower, because later loads would have to wait for it.
@@ -91,7 +91,7 @@ SampleCounts depth_test_kernel(SampleAccess* items, const CellPlane<float>* plan
 SampleCounts depth_equal_kernel(SampleAccess* items, const CellPlane<float>* planes, std::size_t count,
                                 const SamplePattern& pattern, const float* depths) {
   const auto samples = static_cast<std::size_t>(pattern.count);
-  const Positions positions(pattern);
+  const PatternPositions positions(pattern);
   const auto test = [=, &positions](auto d, const SampleAccess& item, const CellPlane<float>& plane, std::size_t s) {
     const auto stored = hn::LoadU(d, depths + item.cell * samples + s);
     return hn::And(hn::Eq(depths_at(d, plane, positions, s), stored), samples_at(d, item.tested, s));

@@ -1,6 +1,6 @@
 // Formulas of simd/triangle_in_pixel.h. No include guard: see simd/scalar.h.
 
-// Edge k of the triangle.
+// Edge k of the triangle. `inline` is for g++, which would otherwise call it once for each edge of a vector.
 template <class Int>
 inline EdgeInPixel<Int> edge_in_pixel(const TriangleInPixelOf<Int>& triangle, int k) {
   const int next = (k + 1) % 3;

@@ -402,6 +402,16 @@ mutants=(  # file | text as it is | broken
   'stages/spirv/shader_executor.cpp|stopped_ += stopped;|'
   'stages/surface/program_shader.cpp|if (counts.stopped > 0) bound.most_steps = kStepsOfEndless;|'
   'stages/surface/program_shader.cpp|if (counts.stopped > 0) *draw.stopped += counts.stopped;|'
+  'pipeline/memory/block_cache.h|lines_[place].dirty |= request_.write;|'
+  'pipeline/memory/tile_surface.h|access.key == key && access.position|access.position'
+  'stages/beam/compose_pooled.cpp|contested &= (1u << at_.shape.owners) - 1;|'
+  'stages/data/closed_depth.h|nearest[i] > depth_[tile_.index(x[i], y[i])]|nearest[i] >= depth_[tile_.index(x[i], y[i])]'
+  'stages/raster/sample_raster.cpp|quad_ += kQuadsPerRow;|'
+  'stages/raster/traverse.h|left < range.x0 ? ~kFirstColumn : kAll|kAll'
+  'stages/raster/traverse.h|y < range.y0 ? kLower : kAll|kAll'
+  'stages/beam/compose_pooled_pixel-inl.h|most = std::max(most, static_cast<float>(count|most = std::max(most, static_cast<float>(before.count'
+  'simd/touched_pixels.cpp|x += 4, quad += 2;|x += 4, quad += 1;'
+  'simd/quad_rows.cpp|edges[k].down * static_cast<double>(2 * row)|edges[k].down * static_cast<double>(row)'
 )
 
 stale=0

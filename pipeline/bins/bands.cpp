@@ -108,10 +108,10 @@ std::uint64_t bytes_of_pairs(const SetupTriangles& triangles, const TriangleList
   for (const std::uint32_t index : list) {
     const std::size_t each = pair_bytes.of(index);
     if (each == 0) continue;
-    const std::uint64_t before = traversal.counts.cells_touched;
     const SetupTriangle& triangle = triangles.triangles[index];
-    traverse(triangle, EdgeSet(triangle), traversal, [](std::int32_t, std::int32_t, std::uint32_t, bool) {});
-    bytes += (traversal.counts.cells_touched - before) * each;
+    traverse_quads(triangle, EdgeSet(triangle), traversal, [&](std::int32_t, std::int32_t, const QuadRow& pixels) {
+      bytes += static_cast<std::uint64_t>(std::popcount(pixels.touched)) * each;
+    });
   }
   return bytes;
 }

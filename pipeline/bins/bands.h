@@ -20,7 +20,7 @@ struct TileGrid {
 
   TileGrid(const Frame& frame, std::int32_t tile_size);
 
-  // pixels / size. `pixels` and size: 0..2^15; frames have up to 2^14 pixels on each side.
+  // pixels / size. `pixels`: 0..2^15; frames have up to 2^14 on each side. The size: 1..2^15.
   std::int32_t tiles_in(std::int32_t pixels) const {
     return static_cast<std::int32_t>(static_cast<std::uint64_t>(pixels) * inverse_ >> 32);
   }

@@ -119,7 +119,7 @@ void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& ti
   const auto pixel_of = [grid, tile](const SampleFragment& fragment) {
     return tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
   };
-  if (grid.cells_per_pixel() == 1) {
+  if (grid.cells_per_pixel() == 1) {  // a triangle has one fragment in it at most
     for (const SampleFragment& fragment : fragments) ++counts[pixel_of(fragment)];
     return;
   }

@@ -64,6 +64,10 @@ class ConservativeRasterUnit {
       conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_,
                           {closed_ ? &*closed_ : nullptr, depths_, Closing::by_later_stage});
       bin_.holds("pair_queue", std::min(pairs_.size(), kQueueItems) * kQueuedPairBytes);
+      if (pairs_.size() <= kPairs) {
+        if (!pairs_.empty()) body(pairs_, first);
+        continue;
+      }
       for (std::size_t at = 0; at < pairs_.size(); at += kPairs) {
         const auto from = pairs_.begin() + static_cast<std::ptrdiff_t>(at);
         chunk.assign(from, from + static_cast<std::ptrdiff_t>(std::min(kPairs, pairs_.size() - at)));

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <span>
 
+#include "simd/coverage.h"
+#include "simd/depth_range.h"
+#include "simd/sample_mask.h"
 #include "stages/beam/beam_fragment_cost.h"
 #include "stages/beam/specks.h"
 #include "stages/data/fragment_geometry.h"

@@ -2,15 +2,12 @@
 // the clipped triangle and its centroid, the mask, the depth plane and the depth range.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "simd/coverage.h"
-#include "simd/depth_range.h"
 #include "simd/mask_table.h"
 #include "simd/position_mask.h"
-#include "simd/sample_mask.h"
+#include "simd/sample_pattern.h"
 #include "stages/cost/counters.h"
 #include "stages/data/alpha_places.h"
 #include "stages/data/fragment.h"

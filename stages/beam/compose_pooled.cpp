@@ -170,7 +170,7 @@ class PooledComposer {
   }
 
   void share(const Fragment& fragment, const Mask& mask, std::uint32_t number, ClosedDepth& closed) {
-    std::uint32_t contested = 0;  // bit k: owner k
+    std::uint32_t contested = 0;          // bit k: owner k
     constexpr std::size_t kTogether = 4;  // read beyond the last owner, so that the number of rounds varies less
     for (std::size_t first = 0; first < at_.shape.owners; first += kTogether)
       for (std::size_t k = first; k < first + kTogether; ++k)

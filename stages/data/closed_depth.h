@@ -63,7 +63,7 @@ class ClosedDepth {
   // without branches that depend on the depths. The caller counts what it has asked for.
   bool hides_or_closes(std::int32_t x, std::int32_t y, float nearest, float farthest, bool closes) {
     float& depth = depth_[tile_.index(x, y)];
-    const bool hidden = nearest > depth, changes = closes & !hidden & (farthest < depth);
+    const bool hidden = nearest > depth, changes = closes & !hidden & !(farthest >= depth);
     work_.changes += changes;
     changes_ += changes & (depth == farthest_);
     depth = changes ? farthest : depth;

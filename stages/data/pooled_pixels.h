@@ -199,8 +199,8 @@ struct RecordHead {
 };
 
 // A record with room for so many owners. Depths of owners are not part of the modelled record: the machine computes
-// them again whenever it needs them, and this program keeps them. Eight may be read at once, from any multiple of
-// eight.
+// them again whenever it needs them, and this program keeps them. Eight of the depths may be read at once, and four of
+// the positions, from any multiple of as many.
 template <std::size_t Words, std::size_t Owners>
 struct Record {
   static_assert(Owners % 8 == 0);
@@ -248,7 +248,7 @@ class RecordStore {
   static constexpr std::size_t owners_in(std::uint8_t size) { return std::size_t{8} << size; }
   static constexpr std::uint8_t size_for(std::size_t owners) { return owners <= 8 ? 0 : owners <= 16 ? 1 : 2; }
 
-  // Of a size.
+  // The sizes have room for 8, 16 and 32 owners.
   void* take(std::uint8_t size) { return size == 0 ? small_.take() : size == 1 ? medium_.take() : large_.take(); }
   void give_back(std::uint8_t size, void* record) {
     (size == 0 ? small_.free : size == 1 ? medium_.free : large_.free).push_back(record);

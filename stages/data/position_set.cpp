@@ -43,12 +43,29 @@ const std::array<std::uint8_t, 3>& PositionSet::nearest_to(float u, float v) con
   return nearest[static_cast<std::size_t>(place_of(v) * kPlaces + place_of(u))];
 }
 
+namespace {
+
+template <int kCount>
+const PositionSet& the_set() {
+  static const PositionSet set(cell_patterns(kCount));
+  return set;
+}
+
+}  // namespace
+
 const PositionSet& cell_positions(int count) {
-  static const std::array sets{PositionSet(cell_patterns(32)), PositionSet(cell_patterns(64)),
-                               PositionSet(cell_patterns(128)), PositionSet(cell_patterns(256))};
-  for (const PositionSet& set : sets)
-    if (set.count() == count) return set;
-  throw std::invalid_argument("expected 32, 64, 128 or 256 positions, found " + std::to_string(count));
+  switch (count) {
+    case 32:
+      return the_set<32>();
+    case 64:
+      return the_set<64>();
+    case 128:
+      return the_set<128>();
+    case 256:
+      return the_set<256>();
+    default:
+      throw std::invalid_argument("expected 32, 64, 128 or 256 positions, found " + std::to_string(count));
+  }
 }
 
 }  // namespace beampipe

@@ -48,7 +48,7 @@ struct TraversalCounts {
   std::uint64_t boxes = 0;       // triangles whose bounding box was computed
   std::uint64_t traversals = 0;  // triangles whose bounding box touches a cell of the tile
   std::uint64_t cells_tested = 0;
-  std::uint64_t cells_touched = 0;  // only by traverse()
+  std::uint64_t cells_touched = 0;  // counted by those who visit them
 };
 
 // When a cell counts as full: the triangle covers the closed cell, or it owns every sample that the cell could have.
@@ -60,7 +60,6 @@ struct Traversal {
   CellGrid grid = {};
   FullMeans meaning = FullMeans::area;
   TraversalCounts counts = {};
-  std::uint32_t quad = 0;  // number of the next row's first 2x2 quad
 };
 
 // Edge k over the cells from the one whose upper left corner is (x, y) on, in 1/256 px. The numbers are integers that
@@ -118,20 +117,5 @@ void traverse_quads(const SetupTriangle& triangle, const EdgeSet& set, Traversal
 // Where cell number `bit` of a row of quads is, from the first one.
 inline std::int32_t column_of(int bit) { return (bit >> 2) * 2 + (bit & 1); }
 inline std::int32_t row_of(int bit) { return bit >> 1 & 1; }
-
-// Calls visit(x, y, quad, full) for every cell that the triangle touches, one 2x2 quad after the other. `quad`: the
-// same number for all cells in one quad. `full`: the triangle covers the whole cell. `set`: the triangle's edges.
-template <class Visit>
-void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
-  traverse_quads(triangle, set, traversal, [&](std::int32_t x, std::int32_t y, const QuadRow& cells) {
-    for (std::uint64_t bits = cells.touched; bits != 0; bits &= bits - 1) {
-      const int bit = std::countr_zero(bits);
-      ++traversal.counts.cells_touched;
-      visit(x + column_of(bit), y + row_of(bit), traversal.quad + static_cast<std::uint32_t>(bit >> 2),
-            (cells.full >> bit & 1) != 0);
-    }
-    traversal.quad += kQuadsPerRow;
-  });
-}
 
 }  // namespace beampipe

@@ -141,13 +141,15 @@ TEST_P(WindowTwins, ClosedCells) {
     ASSERT_FALSE(bounds.nearest > open);
     std::uint64_t tests = 0, closings = 0;
     Traversal traversal{tile_, sampling.grid, FullMeans::samples};
-    traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t, std::int32_t, std::uint32_t, bool full) {
-      ++tests;
-      ASSERT_FALSE(bounds.nearest > open);
-      if (!full) return;
-      ++closings;
-      ASSERT_FALSE(bounds.farthest >= open);
-      ASSERT_TRUE(open == Float(1.0f));
+    traverse_quads(triangle, EdgeSet(triangle), traversal, [&](std::int32_t, std::int32_t, const QuadRow& cells) {
+      for (std::uint64_t left = cells.touched; left != 0; left &= left - 1) {
+        ++tests;
+        ASSERT_FALSE(bounds.nearest > open);
+        if ((cells.full & left & ~(left - 1)) == 0) continue;
+        ++closings;
+        ASSERT_FALSE(bounds.farthest >= open);
+        ASSERT_TRUE(open == Float(1.0f));
+      }
     });
     const std::uint64_t cells = 4 * tile_.pixels(), refreshed = closings == cells ? 2 * cells : 0;
     twin_.add += refreshed;

@@ -66,4 +66,24 @@ TEST(SampleRaster, EqualsATestOfEverySample) {
   }
 }
 
+// The fragments of a triangle come one 2x2 quad of cells after the other, and those of one quad have a number of their
+// own.
+TEST(SampleRaster, QuadsFollowEachOtherAndHaveNumbers) {
+  Random random(115);
+  const Tile wide{0, 0, 100, 60};
+  for (const Sampling& sampling : every_sampling()) {
+    const SetupTriangles triangles = random_triangles(random, 2'000 / sampling.grid.cells_per_pixel());
+    const auto place = [](const SampleFragment& f) {
+      return std::tuple(f.triangle, f.y >> 1, f.x >> 1, f.y & 1, f.x & 1);
+    };
+    const auto quad = [](const SampleFragment& f) { return std::tuple(f.triangle, f.y >> 1, f.x >> 1); };
+    const std::vector<SampleFragment> fragments = rasterize(triangles, wide, sampling).fragments;
+    for (std::size_t i = 1; i < fragments.size(); ++i) {
+      const SampleFragment &before = fragments[i - 1], &here = fragments[i];
+      ASSERT_LT(place(before), place(here)) << name_of(sampling) << ", fragment " << i;
+      ASSERT_EQ(quad(before) == quad(here), before.quad == here.quad) << name_of(sampling) << ", fragment " << i;
+    }
+  }
+}
+
 }  // namespace beampipe::sample_raster_test
