@@ -410,7 +410,6 @@ mutants=(  # file | text as it is | broken
   'stages/raster/traverse.h|left < range.x0 ? ~kFirstColumn : kAll|kAll'
   'stages/raster/traverse.h|y < range.y0 ? kLower : kAll|kAll'
   'stages/beam/compose_pooled_pixel-inl.h|most = std::max(most, static_cast<float>(count|most = std::max(most, static_cast<float>(before.count'
-  'simd/touched_pixels.cpp|x += 4, quad += 2;|x += 4, quad += 1;'
   'simd/quad_rows.cpp|edges[k].down * static_cast<double>(2 * row)|edges[k].down * static_cast<double>(row)'
 )
 
