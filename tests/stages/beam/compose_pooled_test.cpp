@@ -51,6 +51,7 @@ TEST(ComposePooled, AnEdgeOverASurface) {
     expect_pixel(tile.compose(list).at(0), 1, {0.5, 0.5, 0}, 1e-7);
     EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::open);
     EXPECT_EQ(tile.pixels.pool.used(), 3u) << "one plane and two surfaces: 48 bytes";
+    EXPECT_EQ(tile.record_bytes.at(0), 54.0f) << "with links of two bytes";
   }
   // A third one in front of both takes the pixel, and the record is free again.
   add_everywhere(triangles, -0.9f);
