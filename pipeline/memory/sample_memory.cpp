@@ -26,12 +26,6 @@ constexpr std::array<std::uint32_t, kMaxMaskSamples> kBit = [] {
   return bits;
 }();
 
-bool all_equal(const std::uint32_t* values, std::size_t count) {
-  std::uint32_t differences = 0;
-  for (std::size_t i = 1; i < count; ++i) differences |= values[i] ^ values[0];
-  return differences == 0;
-}
-
 }  // namespace
 
 SampleMemory::SampleMemory(const MemorySystem& memory, const Tile& tile, const Sampling& sampling,
@@ -148,7 +142,7 @@ void SampleMemory::add_bytes(std::vector<float>& pixels) const {
 std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) {
   const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, owner_.size());
   const std::size_t samples = elements * samples_, raw = samples * kSampleDepthBytes;
-  if (end - begin == samples && owner_[begin] != kNoTriangle && all_equal(&owner_[begin], samples))
+  if (end - begin == samples && owner_[begin] != kNoTriangle && all_show(&owner_[begin], samples, owner_[begin]))
     return std::min(plane_bytes_, static_cast<std::uint32_t>(raw));
   // What differs from the sample before, and of that what differs from all before.
   planes_.resize(samples);
@@ -179,7 +173,7 @@ std::uint32_t SampleMemory::color_bytes(std::size_t first, std::size_t elements)
   const auto compressed = static_cast<std::uint32_t>(elements) * color_sample_bytes_;
   for (std::size_t element = first; element < std::min(first + elements, order_.positions); ++element) {
     const std::uint32_t* const owners = &(color_owner_.empty() ? owner_ : color_owner_)[element * samples_];
-    if (all_equal(owners, samples_)) continue;
+    if (all_show(owners, samples_, *owners)) continue;
     for (std::size_t sample = 1; sample < samples_; ++sample) {
       if (owners[sample] == owners[sample - 1]) continue;
       if (owners[sample] == kNoTriangle || owners[sample - 1] == kNoTriangle ||

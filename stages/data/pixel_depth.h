@@ -19,13 +19,13 @@ inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t
           static_cast<float>(triangle.depth.dzdy)};
 }
 
-// At the upper left corner of a cell, which is (x, y), in pixels.
+// The triangle's depth at the upper left corner of a cell, which is (x, y), in pixels.
 template <class Real>
 auto cell_depth(const ScreenDepthOf<Real>& depth, Real x, Real y) {
   return to_float(depth.at(x, y));
 }
 
-// The same for the samples of a cell, whose upper left corner is (x, y), in pixels.
+// The triangle's depth plane for the samples of that cell.
 template <class Real>
 auto cell_plane(const ScreenDepthOf<Real>& depth, Real x, Real y) {
   const Real unit(1.0 / kSubpixelUnits);

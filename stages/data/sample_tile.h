@@ -35,4 +35,11 @@ struct SampleTile {
   SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes_per_sample = kSampleColorBytes);
 };
 
+// Do `count` samples all show this triangle? Compares many at once, without branches.
+inline bool all_show(const std::uint32_t* owners, std::size_t count, std::uint32_t triangle) {
+  std::uint32_t differences = 0;
+  for (std::size_t i = 0; i < count; ++i) differences |= owners[i] ^ triangle;
+  return differences == 0;
+}
+
 }  // namespace beampipe

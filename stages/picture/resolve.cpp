@@ -37,27 +37,20 @@ struct SampleRun {
   bool varies;             // its colour depends on the cell that it lies in
 };
 
-// Compares many at once, without branches.
-bool all_are(const std::uint32_t* values, std::size_t count, std::uint32_t value) {
-  std::uint32_t differences = 0;
-  for (std::size_t i = 0; i < count; ++i) differences |= values[i] ^ value;
-  return differences == 0;
-}
-
 // Do all samples of the pixel show the same, which is flat?
 bool is_flat(const SampleTile& surface, std::size_t pixel, const TileShader& shader) {
   const std::uint32_t* const owner = surface.triangle.data() + pixel * surface.samples_per_pixel;
-  return surface.over.empty() && all_are(owner, surface.samples_per_pixel, *owner) &&
+  return surface.over.empty() && all_show(owner, surface.samples_per_pixel, *owner) &&
          (*owner == kNoTriangle || shader.is_flat(*owner));
 }
 
-// Calls visit(run) for the runs of a pixel, in order.
+// Calls visit(run) for the runs of a pixel, in order. `flat`: is_flat() of it.
 template <class Visit>
 void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samples_per_cell, const TileShader& shader,
-                  Visit&& visit) {
+                  bool flat, Visit&& visit) {
   const std::size_t samples = surface.samples_per_pixel;
   const std::uint32_t* const owner = surface.triangle.data() + pixel * samples;
-  if (is_flat(surface, pixel, shader)) return visit(SampleRun{0, samples, *owner, false});
+  if (flat) return visit(SampleRun{0, samples, *owner, false});
   constexpr std::size_t kBlock = 8;  // samples
   const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
   for (std::size_t s = 0; s < samples;) {
@@ -65,7 +58,7 @@ void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samp
     const bool varies = triangle != kNoTriangle && !shader.is_flat(triangle);
     const std::size_t most = varies ? s - s % samples_per_cell + samples_per_cell : samples;
     std::size_t end = s + 1;
-    while (!over && end + kBlock <= most && all_are(owner + end, kBlock, triangle)) end += kBlock;
+    while (!over && end + kBlock <= most && all_show(owner + end, kBlock, triangle)) end += kBlock;
     while (end < most && owner[end] == triangle && (!over || over[end] == over[s])) ++end;
     visit(SampleRun{s, end, triangle, varies});
     s = end;
@@ -81,12 +74,13 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   if (!shader.is_flat()) {
     std::vector<Invocation> invocations;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
-        if (!run.varies) return;
-        const CellPlace place = options.place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
-        invocations.push_back(
-            {run.triangle, shader.place(static_cast<std::uint32_t>(pixel), place.u, place.v), place.width});
-      });
+      for_each_run(
+          surface, pixel, samples_per_cell, shader, is_flat(surface, pixel, shader), [&](const SampleRun& run) {
+            if (!run.varies) return;
+            const CellPlace place = options.place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
+            invocations.push_back(
+                {run.triangle, shader.place(static_cast<std::uint32_t>(pixel), place.u, place.v), place.width});
+          });
     }
     varying = shader.colors(invocations);
   }
@@ -110,7 +104,7 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
     // Runs of equal samples are added at once. The sum is that of a box filter in double precision either way.
     glm::dvec3 sum(0.0);
     double covered = 0;
-    for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
+    for_each_run(surface, pixel, samples_per_cell, shader, flat, [&](const SampleRun& run) {
       const auto count = static_cast<double>(run.end - run.begin);
       double weight = share;                                             // of a sample
       const double seen = over ? 1.0 - double{over[run.begin].a} : 1.0;  // of the opaque surface

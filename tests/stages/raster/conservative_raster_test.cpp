@@ -69,19 +69,24 @@ Truth truth(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
   return {touched || corners_inside > 0, corners_inside == 4};
 }
 
-TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
-  Random random(101);
-  const SetupTriangles triangles = random_triangles(random, 6'000);
+// The pairs of a tile are those of all its pixels that triangles touch.
+void expect_touched_pixels(const SetupTriangles& triangles, const Tile& tile) {
   std::set<TouchedPair> expected;
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
-    for (std::int32_t y = kFrame.y0; y < kFrame.y1; ++y)
-      for (std::int32_t x = kFrame.x0; x < kFrame.x1; ++x)
+    for (std::int32_t y = tile.y0; y < tile.y1; ++y)
+      for (std::int32_t x = tile.x0; x < tile.x1; ++x)
         if (const Truth found = truth(triangles.triangles[i], x, y); found.touched)
           expected.emplace(i, x, y, found.full);
-  const Raster raster = rasterize(triangles, kFrame);
+  const Raster raster = rasterize(triangles, tile);
   EXPECT_EQ(raster.set().size(), raster.pairs.size()) << "a pixel occurs twice";
   EXPECT_TRUE(raster.set() == expected);
   EXPECT_EQ(raster.counters.items_out, expected.size());
+}
+
+TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
+  Random random(101);
+  const SetupTriangles triangles = random_triangles(random, 6'000);
+  expect_touched_pixels(triangles, kFrame);
 }
 
 TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
@@ -113,15 +118,7 @@ TEST(ConservativeRaster, FindsThePixelsOfLargeTriangles) {
   SetupTriangles triangles;
   while (triangles.triangles.size() < 100)
     add_triangle(triangles, {coordinate(), coordinate()}, {coordinate(), coordinate()}, {coordinate(), coordinate()});
-  std::set<TouchedPair> expected;
-  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
-    for (std::int32_t y = kTile.y0; y < kTile.y1; ++y)
-      for (std::int32_t x = kTile.x0; x < kTile.x1; ++x)
-        if (const Truth found = truth(triangles.triangles[i], x, y); found.touched)
-          expected.emplace(i, x, y, found.full);
-  const Raster raster = rasterize(triangles, kTile);
-  EXPECT_EQ(raster.set().size(), raster.pairs.size()) << "a pixel occurs twice";
-  EXPECT_TRUE(raster.set() == expected);
+  expect_touched_pixels(triangles, kTile);
 }
 
 // The quads of a triangle come row by row, and the pixels of a quad as well.
