@@ -53,11 +53,14 @@ SamplePlaces::OfPrograms SamplePlaces::add_quad_texels_of_materials(const std::v
   const SurfaceShader& shader = bin_.context.shader;
   const SamplePlaces helpers(bin_, sampling_, at_ == ShadeAt::centroid ? ShadeAt::centre : at_);
   OfPrograms found;
+  std::vector<Invocation> counted;  // whose requests are not kept
   const auto add = [&](const SamplePlaces& places, const SampleFragment& fragment, std::vector<Invocation>& programs) {
     if (shader.is_flat(fragment.triangle)) return;
     const Invocation there = places.invocation(fragment);
     if (shader.is_program(fragment.triangle)) {
       programs.push_back(there);
+    } else if (!texels.are_kept()) {
+      counted.push_back(there);
     } else {
       shader.add_texels(there.triangle, there.place, there.footprint, texels);
     }
@@ -76,6 +79,7 @@ SamplePlaces::OfPrograms SamplePlaces::add_quad_texels_of_materials(const std::v
     }
     texels.end_request();
   }
+  shader.count_texels(counted, texels);
   return found;
 }
 

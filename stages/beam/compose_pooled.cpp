@@ -80,7 +80,7 @@ class PooledComposer {
   }
 
   // Computes the colours of all owners that are left, for finish().
-  void shade_all() { colors_.shade_all(pixels_); }
+  void shade_all() { colors_.shade_together(pixels_, std::vector<std::uint32_t>(pixels_.words.size(), ~0u)); }
 
   // All owners are final. `pixel`: index in the tile. Returns its colour.
   PixelColor finish(std::uint32_t pixel) {
@@ -101,9 +101,7 @@ class PooledComposer {
         break;
     }
     at_.open();
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < at_.shape.owners; ++k) list_owner(k, owners_[count++]);
-    if (count > 0) retire(count);
+    if (at_.shape.owners > 0) retire_owners((1u << at_.shape.owners) - 1);
     return limited();
   }
 
@@ -338,6 +336,7 @@ class PooledComposer {
     work.words_scanned += pixels_.words.size();
     std::vector<std::uint32_t>& written = result_.collections.emplace_back();
     pixels_.pool.collected();
+    std::vector<std::uint32_t> final_owners(pixels_.words.size());  // bit k: owner k
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       look_at(pixel);
       if (at_.word().kind != PixelKind::open) continue;
@@ -346,10 +345,18 @@ class PooledComposer {
       const Candidates candidates = find_candidates(watermark);
       if (candidates.none()) continue;
       at_.open();
-      if (!retire_final(candidates, watermark)) continue;
+      final_owners[pixel] = final_among(candidates, watermark);
+    }
+    colors_.shade_together(pixels_, final_owners);
+    for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
+      if (final_owners[pixel] == 0) continue;
+      look_at(pixel);
+      at_.take_apart();
+      retire_owners(final_owners[pixel]);
       store(closed);
       written.push_back(pixel);
     }
+    colors_.forget();
   }
 
   // Owners that are final, and those for which it depends on their positions. Bit k: owner k.
@@ -371,15 +378,22 @@ class PooledComposer {
     return found;
   }
 
-  // Returns whether any is final.
-  bool retire_final(const Candidates& candidates, float watermark) {
-    std::size_t count = 0;
-    for (std::uint32_t left = candidates.final | candidates.perhaps; left != 0; left &= left - 1) {
+  // Those that are final. Bit k: owner k.
+  std::uint32_t final_among(const Candidates& candidates, float watermark) {
+    std::uint32_t found = candidates.final;
+    for (std::uint32_t left = candidates.perhaps; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      if (candidates.final >> k & 1 || farthest_of(k) <= watermark) list_owner(k, owners_[count++]);
+      found |= std::uint32_t{farthest_of(k) <= watermark} << k;
     }
-    if (count > 0) retire(count);
-    return count > 0;
+    return found;
+  }
+
+  // At least one. Bit k: owner k.
+  void retire_owners(std::uint32_t owners) {
+    std::size_t count = 0;
+    for (std::uint32_t left = owners; left != 0; left &= left - 1)
+      list_owner(static_cast<std::size_t>(std::countr_zero(left)), owners_[count++]);
+    retire(count);
   }
 
   // The farthest depth of owner k at its positions.
@@ -445,7 +459,10 @@ class PooledComposer {
   void make_one_less(std::uint32_t number) {
     if (bin_.watermarks) {
       const float watermark = (*bin_.watermarks)[number];
-      if (retire_final(find_candidates(watermark), watermark)) return;
+      if (const std::uint32_t final_owners = final_among(find_candidates(watermark), watermark)) {
+        retire_owners(final_owners);
+        return;
+      }
     }
     for (std::size_t k = 0; k < at_.shape.owners; ++k) {
       list_owner(k, owners_[k]);

@@ -31,33 +31,50 @@ class OwnerColors {
 
   OwnerColors(const OwnersBin& bin, OwnersResult& result, PooledWork& work) : bin_(bin), result_(result), work_(work) {}
 
-  // Computes the colours of all owners that are left, for of_final() and of_cover(). The modelled machine shades owners
-  // as they become final, so this leaves them alone if their requests for texels are kept.
-  void shade_all(PooledPixels<Words>& pixels) {
-    if (bin_.shader.is_flat() || bin_.shading.at != OwnerPlace::covered) return;
+  // Computes colours side by side, for of_final() and of_cover(), until forget(). wanted[pixel]: bit k: that of owner
+  // k; of a covered pixel, any bit. If requests for texels are kept, their order matters, and this does nothing.
+  void shade_together(const PooledPixels<Words>& pixels, const std::vector<std::uint32_t>& wanted) {
+    const bool is_adaptive = bin_.shading.at == OwnerPlace::adaptive;
+    if (bin_.shader.is_flat() || !(is_adaptive || bin_.shading.at == OwnerPlace::covered)) return;
     if (result_.texels && result_.texels->are_kept()) return;
-    std::vector<Invocation> invocations;
-    const auto add = [&](std::uint32_t pixel, std::uint32_t number, float u, float v) {
+    std::vector<Together> owners;
+    const auto add = [&](std::uint32_t pixel, std::uint32_t number, const glm::vec2& centroid, const Mask& owned) {
       const std::uint32_t triangle = bin_.list[number];
-      shaded_at_.push_back(bin_.shader.is_flat(triangle) ? kNotShaded : static_cast<std::uint32_t>(invocations.size()));
-      if (shaded_at_.back() != kNotShaded) invocations.push_back({triangle, bin_.shader.place(pixel, u, v)});
+      if (bin_.shader.is_flat(triangle)) return;
+      shaded_at_.back() = static_cast<std::uint32_t>(owners.size());
+      owners.push_back({pixel, triangle, centroid, owned.wide()});
     };
     for (std::uint32_t pixel = 0; pixel < pixels.words.size(); ++pixel) {
       first_shaded_.push_back(static_cast<std::uint32_t>(shaded_at_.size()));
+      if (wanted[pixel] == 0) continue;
       const PixelWord& word = pixels.words[pixel];
-      if (word.kind == PixelKind::covered) add(pixel, word.number, 0.5f, 0.5f);
+      if (word.kind == PixelKind::covered) {
+        shaded_at_.push_back(kNotShaded);
+        add(pixel, word.number, glm::vec2(0.5f), Mask::filled(true));
+      }
       if (word.kind != PixelKind::open) continue;
       const RecordView<Words> record = RecordStore<Words>::view(word.record_size, word.record);
       for (std::size_t k = 0; k < word.shape.owners; ++k) {
         const OwnerSlot& slot = record.slots[k];
-        if (slot.is_merged()) {
-          shaded_at_.push_back(kNotShaded);
-        } else {
-          add(pixel, slot.triangle(), slot.centroid().x, slot.centroid().y);
-        }
+        shaded_at_.push_back(kNotShaded);
+        if (wanted[pixel] >> k & 1 && !slot.is_merged())
+          add(pixel, slot.triangle(), slot.centroid(), Mask(record.owned(k)));
       }
     }
-    colors_ = bin_.shader.colors(invocations, result_.texels);
+    if (is_adaptive) {
+      shade_adaptively(owners);
+    } else {
+      std::vector<Invocation> invocations;
+      for (const Together& owner : owners)
+        invocations.push_back({owner.triangle, bin_.shader.place(owner.pixel, owner.at.x, owner.at.y)});
+      for (const glm::vec3& color : bin_.shader.colors(invocations, result_.texels)) shaded_.push_back({color, 1});
+    }
+  }
+
+  void forget() {
+    shaded_.clear();
+    first_shaded_.clear();
+    shaded_at_.clear();
   }
 
   // Of owner k of a pixel, which becomes final. `owned`: its positions.
@@ -83,14 +100,15 @@ class OwnerColors {
   }
 
  private:
-  // By shade_all(), if it has shaded this one.
+  // By shade_together(), if it has shaded this one.
   glm::vec3 shaded(std::uint32_t pixel, std::size_t k, std::uint32_t number, const glm::vec2& centroid,
                    const Mask& owned) {
     const std::uint32_t at = first_shaded_.empty() ? kNotShaded : shaded_at_[first_shaded_[pixel] + k];
     if (at == kNotShaded) return shade_owner(pixel, number, centroid, owned);
-    result_.shaded.push_back({bin_.list[number]});
-    if (result_.shadings) ++(*result_.shadings)[pixel];
-    return colors_[at];
+    const Shaded& found = shaded_[at];
+    result_.shaded.insert(result_.shaded.end(), found.times, {bin_.list[number]});
+    if (result_.shadings) (*result_.shadings)[pixel] += static_cast<float>(found.times);
+    return found.color;
   }
 
   glm::vec3 shade_owner(std::uint32_t pixel, std::uint32_t number, const glm::vec2& centroid, const Mask& owned) {
@@ -147,38 +165,123 @@ class OwnerColors {
             count};
   }
 
-  // May light vary by more in the area than is tolerated?
-  bool varies(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
+  Area whole_of(const Mask& owned) { return area_of(owned, Mask::filled(true), glm::vec2(0.5f), 1.0f); }
+
+  // Calls visit(q, area) for each quarter of the pixel of which something is owned.
+  template <class Visit>
+  void for_each_quarter(const Mask& owned, Visit&& visit) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      const Mask quarter(bin_.positions.quarters[q]), here = owned & quarter;
+      if (!here.none()) visit(q, area_of(here, quarter, middle_of(q % 2, q / 2, 0.5f), 0.5f));
+    }
+  }
+
+  // Calls visit(area) for each sixteenth of the pixel in quarter q of which something is owned.
+  template <class Visit>
+  void for_each_sixteenth(const Mask& owned, std::size_t q, Visit&& visit) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t column = 2 * (q % 2) + i % 2, row = 2 * (q / 2) + i / 2;
+      const Mask sixteenth(bin_.positions.sixteenths[4 * row + column]), here = owned & sixteenth;
+      if (!here.none()) visit(area_of(here, sixteenth, middle_of(column, row, 0.25f), 0.25f));
+    }
+  }
+
+  static glm::vec2 middle_of(std::size_t column, std::size_t row, float width) {
+    return (glm::vec2(column, row) + 0.5f) * width;
+  }
+
+  // Does light vary by more in the area than is tolerated? `range`: by how much it may vary.
+  bool varies(const Area& area, float range) const {
+    return range * (area.count / kPositions) > bin_.shading.tolerance;
+  }
+
+  bool may_vary(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
     result_.decisions += bin_.shader.work(triangle).range;
     const float range = bin_.shader.light_range(triangle, pixel, area.at.x, area.at.y, area.footprint, result_.texels);
     end_request(result_.texels);
-    return range * (area.count / kPositions) > bin_.shading.tolerance;
+    return varies(area, range);
   }
 
   // Halves the pixel in both directions where light varies, up to twice.
   glm::vec3 shade_adaptively(std::uint32_t pixel, std::uint32_t triangle, const Mask& owned) {
-    const Area whole = area_of(owned, Mask::filled(true), glm::vec2(0.5f), 1.0f);
-    if (!varies(pixel, triangle, whole)) return shade(pixel, triangle, whole.at, whole.footprint);
+    const Area whole = whole_of(owned);
+    if (!may_vary(pixel, triangle, whole)) return shade(pixel, triangle, whole.at, whole.footprint);
     glm::vec3 sum(0.0f);
     const auto add = [&](const Area& area) { sum += area.count * shade(pixel, triangle, area.at, area.footprint); };
-    const auto middle_of = [](std::size_t column, std::size_t row, float width) {
-      return (glm::vec2(column, row) + 0.5f) * width;
-    };
-    for (std::size_t q = 0; q < 4; ++q) {
-      const Mask quarter(bin_.positions.quarters[q]), here = owned & quarter;
-      if (here.none()) continue;
-      const Area area = area_of(here, quarter, middle_of(q % 2, q / 2, 0.5f), 0.5f);
-      if (!varies(pixel, triangle, area)) {
+    for_each_quarter(owned, [&](std::size_t q, const Area& area) {
+      if (may_vary(pixel, triangle, area)) {
+        for_each_sixteenth(owned, q, add);
+      } else {
         add(area);
+      }
+    });
+    return sum / whole.count;
+  }
+
+  // One of the owners that are shaded together.
+  struct Together {
+    std::uint32_t pixel, triangle;
+    glm::vec2 at;  // the centroid of what its triangle covers
+    WideMask owned;
+  };
+
+  // The areas of some owners, and how far their light may vary.
+  struct Areas {
+    std::vector<Area> areas;
+    std::vector<Invocation> invocations;
+    std::vector<float> ranges;
+  };
+  void add(const Together& owner, const Area& area, Areas& areas) {
+    areas.areas.push_back(area);
+    areas.invocations.push_back({owner.triangle, bin_.shader.place(owner.pixel, area.at.x, area.at.y), area.footprint});
+  }
+  void find_ranges(Areas& areas) {
+    for (const Invocation& invocation : areas.invocations)
+      result_.decisions += bin_.shader.work(invocation.triangle).range;
+    areas.ranges = bin_.shader.light_ranges(areas.invocations, result_.texels);
+  }
+
+  // The same for all at once: first all pixels, then all quarters, then all that is to be shaded.
+  void shade_adaptively(const std::vector<Together>& owners) {
+    Areas wholes, quarters, pieces;
+    for (const Together& owner : owners) add(owner, whole_of(Mask(owner.owned)), wholes);
+    find_ranges(wholes);
+    const auto is_halved = [&](std::size_t i) { return varies(wholes.areas[i], wholes.ranges[i]); };
+    for (std::size_t i = 0; i < owners.size(); ++i)
+      if (is_halved(i))
+        for_each_quarter(Mask(owners[i].owned), [&](std::size_t, const Area& area) { add(owners[i], area, quarters); });
+    find_ranges(quarters);
+    std::size_t quarter = 0;
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      const std::size_t before = pieces.areas.size();
+      const Mask owned(owners[i].owned);
+      const auto add_piece = [&](const Area& area) { add(owners[i], area, pieces); };
+      if (!is_halved(i)) {
+        add_piece(wholes.areas[i]);
+      } else {
+        for (std::size_t q = 0; q < 4; ++q) {
+          if ((owned & Mask(bin_.positions.quarters[q])).none()) continue;
+          const Area& area = quarters.areas[quarter];
+          if (varies(area, quarters.ranges[quarter++])) {
+            for_each_sixteenth(owned, q, add_piece);
+          } else {
+            add_piece(area);
+          }
+        }
+      }
+      shaded_.push_back({glm::vec3(0.0f), static_cast<std::uint32_t>(pieces.areas.size() - before)});
+    }
+    const std::vector<glm::vec3> colors = bin_.shader.colors(pieces.invocations, result_.texels);
+    std::size_t piece = 0;
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      glm::vec3& color = shaded_[i].color;
+      if (!is_halved(i)) {
+        color = colors[piece++];
         continue;
       }
-      for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t column = 2 * (q % 2) + i % 2, row = 2 * (q / 2) + i / 2;
-        const Mask sixteenth(bin_.positions.sixteenths[4 * row + column]), there = owned & sixteenth;
-        if (!there.none()) add(area_of(there, sixteenth, middle_of(column, row, 0.25f), 0.25f));
-      }
+      for (std::uint32_t n = 0; n < shaded_[i].times; ++n, ++piece) color += pieces.areas[piece].count * colors[piece];
+      color /= wholes.areas[i].count;
     }
-    return sum / whole.count;
   }
 
   // `footprint`: the area that the colour stands for.
@@ -195,9 +298,13 @@ class OwnerColors {
   const OwnersBin& bin_;
   OwnersResult& result_;
   PooledWork& work_;
-  // What shade_all() has shaded: the colours, and where those of each pixel's owners are.
+  // What shade_together() has shaded, and where those of each pixel's owners are.
+  struct Shaded {
+    glm::vec3 color;
+    std::uint32_t times;
+  };
   static constexpr std::uint32_t kNotShaded = ~0u;
-  std::vector<glm::vec3> colors_;
+  std::vector<Shaded> shaded_;
   std::vector<std::uint32_t> first_shaded_, shaded_at_;
 };
 

@@ -67,12 +67,17 @@ class PixelAtHand {
 
   // Takes the pixel's state apart.
   HWY_INLINE void open() {
+    take_apart();
+    if (word_->kind != PixelKind::open) return;
+    ++work_.splits[shape.planes()];
+    count_read(shape.planes() * 4 * Words);
+  }
+  // The same once more, which the machine does not have to do.
+  HWY_INLINE void take_apart() {
     empty = final = Mask::filled(false);
     new_slots = 0;
     if (word_->kind == PixelKind::open) {
       look_at_record();
-      ++work_.splits[shape.planes()];
-      count_read(shape.planes() * 4 * Words);
       if (shape.has_empty) empty = Mask(record.head->empty);
       if (shape.has_final) final = Mask(record.head->final);
       return;

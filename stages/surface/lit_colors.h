@@ -1,4 +1,4 @@
-// The colours of points that have the same material, with a point in each lane.
+// The colours of points that have the same material, and how far they vary around them, with a point in each lane.
 #pragma once
 
 #include <cstddef>
@@ -12,5 +12,9 @@ namespace beampipe {
 // to the last bit.
 void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<float>* points,
                 std::size_t count, glm::vec3* colors);
+
+// Sets ranges[i] to light_range of areas[i], to the last bit.
+void light_ranges(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<float>* areas,
+                  std::size_t count, float* ranges);
 
 }  // namespace beampipe

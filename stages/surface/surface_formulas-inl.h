@@ -236,6 +236,22 @@ SurfaceMaterial<Real> material_of(const ShaderInputs& shader, const PointInputs<
   return surface;
 }
 
+// How far light may vary in an area, about.
+template <class Real>
+Real light_range(const ShaderInputs& shader, const AreaInputs<Real>& area, const Lighting& lighting) {
+  const PointInputs<Real>& middle = area.middle;
+  const Real zero(0.0f);
+  Turn<Real> turn{{zero, zero, zero}, {zero, zero, zero}, zero};
+  turn.around = Real(0.5f) * (length(turned(middle.to_eye, area.right_to_eye)) +
+                              length(turned(middle.to_eye, area.below_to_eye)));  // of the direction half-way
+  turn.around = turn.around + area.around_of_texels + area.around_within_texels;
+  if (!shader.has_own_normal) {
+    turn.right = scaled(turned(middle.normal, area.right_normal), middle.facing);
+    turn.down = scaled(turned(middle.normal, area.below_normal), middle.facing);
+  }
+  return light_range(material_of(shader, middle).reflector, turn, lighting);
+}
+
 // Linear RGB towards the eye.
 template <class Real>
 Triple<Real> lit_color(const Material& material, const SurfaceMaterial<Real>& surface, const Lighting& lighting) {

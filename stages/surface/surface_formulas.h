@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <glm/glm.hpp>
 #include <optional>
 
@@ -37,18 +36,6 @@ inline constexpr float kDielectricReflectance = 0.04f;
 template <class Real>
 Real interpolated(const Real& first, const Real& second, const Real& third, const Barycentrics<Real>& weights) {
   return first + weights.second * (second - first) + weights.third * (third - first);
-}
-
-// All attributes.
-template <class Real>
-SurfaceVertexOf<Real> interpolated(const std::array<const SurfaceVertexOf<Real>*, 3>& vertices,
-                                   const Barycentrics<Real>& weights) {
-  using Numbers = std::array<Real, sizeof(SurfaceVertexOf<Real>) / sizeof(Real)>;
-  const auto first = std::bit_cast<Numbers>(*vertices[0]), second = std::bit_cast<Numbers>(*vertices[1]),
-             third = std::bit_cast<Numbers>(*vertices[2]);
-  Numbers result;
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = interpolated(first[i], second[i], third[i], weights);
-  return std::bit_cast<SurfaceVertexOf<Real>>(result);
 }
 
 // How an attribute changes.
@@ -99,6 +86,15 @@ struct PointInputs {
   std::array<Real, 4> color;  // of the vertices
   // Filtered, linear RGBA. Of normals, A is 1 if the texel is a mean of several, else 0.
   std::array<Real, 4> base_texel, metallic_roughness_texel, normal_texel, emissive_texel;
+};
+
+// An area whose light may vary: its middle, and directions on its right and lower side. Textures are what the middle
+// shows, as one that is not read is white.
+template <class Real>
+struct AreaInputs {
+  PointInputs<Real> middle;
+  Triple<Real> right_to_eye, below_to_eye, right_normal, below_normal;  // not normalised
+  Real around_of_texels, around_within_texels;  // by how much normals turn between texels, and within them
 };
 
 namespace scalar {

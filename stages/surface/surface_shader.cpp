@@ -12,6 +12,7 @@
 #include "stages/surface/footprint_filter.h"
 #include "stages/surface/lit_colors.h"
 #include "stages/surface/texture_filter.h"
+#include "stages/surface/texture_taps.h"
 #include "traces/srgb.h"
 
 namespace beampipe {
@@ -39,14 +40,6 @@ TexturePlace<Real> place_on_triangle(const std::array<std::array<Real, 2>, 3>& u
     found.dy[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[1]);
   }
   return found;
-}
-
-std::array<float, 2> uv_at(const std::array<const SurfaceVertex*, 3>& v, std::size_t set,
-                           const Barycentrics<float>& weights) {
-  std::array<float, 2> uv;
-  for (std::size_t c = 0; c < 2; ++c)
-    uv[c] = interpolated(v[0]->uvs[set][c], v[1]->uvs[set][c], v[2]->uvs[set][c], weights);
-  return uv;
 }
 
 // Into the triangle.
@@ -587,34 +580,106 @@ CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPla
   return cover;
 }
 
-float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
-                                 TexelRequests* texels) const {
-  if (is_flat(triangle) || is_program(triangle) || material(triangle).unlit) return 0.0f;
-  const ShaderInputs shader = inputs_of(triangle);
-  const auto inputs_at = [&](float x, float y, const std::array<TexturePoint*, 2>& texture_points) {
-    ShadingPlace at = place;
-    at.u += x, at.v += y;
-    PointInputs<float> inputs{};
-    set_point({triangle, at, footprint}, shader, &inputs, texture_points);
-    return inputs;
+// A point of a triangle.
+struct SurfaceShader::Point {
+  const SetupSurface& surface;
+  std::array<const SurfaceVertex*, 3> vertices;
+  float x, y;  // pixels from the anchor
+  Barycentrics<float> weights;
+
+  // `values`: of the vertices.
+  template <std::size_t kCount>
+  std::array<float, kCount> interpolated(const std::array<float, kCount>& first,
+                                         const std::array<float, kCount>& second,
+                                         const std::array<float, kCount>& third) const {
+    std::array<float, kCount> found;
+    for (std::size_t i = 0; i < kCount; ++i) found[i] = beampipe::interpolated(first[i], second[i], third[i], weights);
+    return found;
+  }
+  template <class Member>
+  Member attribute(Member SurfaceVertex::*member) const {
+    return interpolated(vertices[0]->*member, vertices[1]->*member, vertices[2]->*member);
+  }
+  std::array<std::array<float, 2>, 3> uvs(std::size_t set) const {
+    return {vertices[0]->uvs[set], vertices[1]->uvs[set], vertices[2]->uvs[set]};
+  }
+  std::array<float, 2> uv(std::size_t set) const {
+    const auto [first, second, third] = uvs(set);
+    return interpolated(first, second, third);
+  }
+};
+
+// Invocations of one shader, which wait until there are enough of them.
+struct SurfaceShader::Batch {
+  std::size_t work;  // index into works_
+  std::vector<Invocation> invocations;
+  std::vector<std::size_t> places;  // of what is found
+};
+
+// Sorts invocations into batches. run(batch): of at most kMostInvocations.
+template <class Run>
+class SurfaceShader::Batches {
+ public:
+  Batches(const SurfaceShader& shader, Run run) : shader_(shader), run_(std::move(run)) {}
+
+  void add(const Invocation& invocation, std::size_t place) {
+    const std::uint32_t triangle = invocation.triangle;
+    const std::size_t work = work_index(shader_.triangles_.surfaces[triangle].material, shader_.inputs_of(triangle));
+    if (current_ >= batches_.size() || batches_[current_].work != work) {
+      current_ = 0;
+      while (current_ < batches_.size() && batches_[current_].work != work) ++current_;
+      if (current_ == batches_.size()) batches_.push_back({work, {}, {}});
+    }
+    Batch& batch = batches_[current_];
+    batch.invocations.push_back(invocation);
+    batch.places.push_back(place);
+    if (batch.places.size() == kMostInvocations) finish(batch);
+  }
+
+  // Those that still wait.
+  void finish() {
+    for (Batch& batch : batches_)
+      if (!batch.places.empty()) finish(batch);
+  }
+
+ private:
+  void finish(Batch& batch) {
+    run_(batch);
+    batch.invocations.clear();
+    batch.places.clear();
+  }
+
+  const SurfaceShader& shader_;
+  Run run_;
+  std::vector<Batch> batches_;
+  std::size_t current_ = 0;  // most invocations have the shader of the one before
+};
+
+AreaInputs<float> SurfaceShader::area_inputs(const Invocation& invocation, const ShaderInputs& shader,
+                                             TexelRequests* texels) const {
+  const Footprint& footprint = invocation.footprint;
+  const auto point_beside = [&](float x, float y) {
+    ShadingPlace place = invocation.place;
+    place.u += x, place.v += y;
+    return point_at(invocation.triangle, place);
   };
-  std::array<TexturePoint, 2> points;
-  PointInputs<float> middle = inputs_at(0, 0, {&points[0], &points[1]});
-  const PointInputs<float> right = inputs_at(0.5f * footprint.xx, 0.5f * footprint.xy, {}),
-                           below = inputs_at(0, 0.5f * footprint.yy, {});
-  Turn<float> turn{};
-  turn.around = 0.5f * (length(turned(middle.to_eye, right.to_eye)) +
-                        length(turned(middle.to_eye, below.to_eye)));  // of the direction half-way
+  const Point middle = point_at(invocation.triangle, invocation.place),
+              right = point_beside(0.5f * footprint.xx, 0.5f * footprint.xy),
+              below = point_beside(0, 0.5f * footprint.yy);
+  AreaInputs<float> area{};
+  set_inputs(invocation.triangle, middle, shader, area.middle);
+  area.right_to_eye = right.attribute(&SurfaceVertex::to_eye);
+  area.below_to_eye = below.attribute(&SurfaceVertex::to_eye);
   if (!shader.has_own_normal) {
-    turn.right = scaled(turned(middle.normal, right.normal), middle.facing);
-    turn.down = scaled(turned(middle.normal, below.normal), middle.facing);
+    area.right_normal = right.attribute(&SurfaceVertex::normal);
+    area.below_normal = below.attribute(&SurfaceVertex::normal);
   }
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
-    middle.*texel = {1.0f, 1.0f, 1.0f, 1.0f};
+    area.middle.*texel = {1.0f, 1.0f, 1.0f, 1.0f};
     if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
     const ColorSpace space = space_of(role);
     const MipChain& chain = textures_->chain(texture.image, space);
-    const auto& [uv, slopes] = points[texture.uv_set];
+    const auto [uv, slopes] = texture_point(invocation, middle, texture.uv_set);
     const CoveringLevel covering = covering_level(chain, slopes);
     const TexelQuad quad = texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
     const auto& all = quad.texels;
@@ -622,20 +687,45 @@ float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& pla
                     most = glm::max(glm::max(all[0], all[1]), glm::max(all[2], all[3]));
     const glm::vec4 mean = (all[0] + all[1] + all[2] + all[3]) * 0.25f;
     if (role == TextureRole::metallic_roughness) {
-      middle.*texel = {mean.r, least.g, most.b, 1.0f};
+      area.middle.*texel = {mean.r, least.g, most.b, 1.0f};
       return;
     }
     // What four texels span, they span over a length of one texel. A texel of several is the shorter the more they
     // differ.
     const glm::vec2 span = (glm::vec2(most) - glm::vec2(least)) * std::min(covering.side, 1.0f);
-    turn.around += std::abs(shader.material.normal_scale) * glm::length(span);
+    area.around_of_texels = std::abs(shader.material.normal_scale) * glm::length(span);
     if (covering.level > 0) {
       const float mean_length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
-      turn.around += std::sqrt(2.0f * (1.0f - mean_length));
+      area.around_within_texels = std::sqrt(2.0f * (1.0f - mean_length));
     }
-    middle.*texel = {mean.r, mean.g, mean.b, 0.0f};
+    area.middle.*texel = {mean.r, mean.g, mean.b, 0.0f};
   });
-  return beampipe::light_range(material_of(shader, middle).reflector, turn, frame_.lighting);
+  return area;
+}
+
+float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
+                                 TexelRequests* texels) const {
+  if (!may_vary(triangle)) return 0.0f;
+  const ShaderInputs shader = inputs_of(triangle);
+  return beampipe::light_range(shader, area_inputs({triangle, place, footprint}, shader, texels), frame_.lighting);
+}
+
+std::vector<float> SurfaceShader::light_ranges(const std::vector<Invocation>& invocations,
+                                               TexelRequests* texels) const {
+  std::vector<float> ranges(invocations.size());
+  std::array<AreaInputs<float>, kMostInvocations> areas;
+  std::array<float, kMostInvocations> found;
+  Batches batches(*this, [&](const Batch& batch) {
+    const ShaderInputs shader = inputs_of(batch.invocations[0].triangle);
+    const std::size_t count = batch.invocations.size();
+    for (std::size_t i = 0; i < count; ++i) areas[i] = area_inputs(batch.invocations[i], shader, texels);
+    beampipe::light_ranges(shader, frame_.lighting, areas.data(), count, found.data());
+    for (std::size_t i = 0; i < count; ++i) ranges[batch.places[i]] = found[i];
+  });
+  for (std::size_t i = 0; i < invocations.size(); ++i)
+    if (may_vary(invocations[i].triangle)) batches.add(invocations[i], i);
+  batches.finish();
+  return ranges;
 }
 
 // Texture coordinates and vertex alphas are quotients of linear functions. As long as the divisor is positive, they are
@@ -685,64 +775,72 @@ CutoutCover SurfaceShader::cutout_cover(std::uint32_t triangle, const ShadingPla
   return factor.most * of_texture.most * (1 + kRounding) < cutoff ? CutoutCover::none : CutoutCover::mixed;
 }
 
-void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& shader, PointInputs<float>* inputs,
-                              const std::array<TexturePoint*, 2>& texture_points) const {
-  const SetupSurface& surface = triangles_.surfaces[invocation.triangle];
-  std::array<const SurfaceVertex*, 3> v;
-  for (std::size_t k = 0; k < 3; ++k) v[k] = &triangles_.vertices[surface.vertices[k]];
-
+SurfaceShader::Point SurfaceShader::point_at(std::uint32_t triangle, const ShadingPlace& place) const {
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  const ShadingPlace& place = invocation.place;
-  const Footprint footprint = by_pixel ? Footprint() : invocation.footprint;
-  const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
-  const auto [x, y] = from_anchor(static_cast<float>(place.x) + (by_pixel ? 0.5f : place.u),
-                                  static_cast<float>(place.y) + (by_pixel ? 0.5f : place.v));
-  Barycentrics<float> weights = weights_at(surface.planes, x, y);
-  if (by_pixel) weights = clamped(weights);
-
-  if (inputs) {
-    const SurfaceVertex attributes = interpolated(v, weights);
-    const TriangleInputs<float> triangle{triple<float>(triangles_.attributes[invocation.triangle].normal),
-                                         surface.turned ? -1.0f : 1.0f, triple<float>(glm::vec3(surface.tangent)),
-                                         shader.has_tangents ? v[0]->tangent_sign : surface.tangent.w};
-    const auto attribute = [&](auto member) { return attributes.*member; };
-    set_attributes(shader, triangle, attribute, *inputs);
-  }
-
-  // Slopes from the centre of a pixel to the centre of the next one in its quad.
-  const auto place_in_quad = [&](std::uint32_t set) {
-    TexturePlace<float> found;
-    found.uv = uv_at(v, set, weights);
-    const auto at_centre = [&](std::int32_t px, std::int32_t py) {
-      const auto [cx, cy] = from_anchor(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
-      return uv_at(v, set, weights_at(surface.planes, cx, cy));
-    };
-    const std::int32_t even_x = place.x & ~1, even_y = place.y & ~1;
-    const auto from_x = at_centre(even_x, place.y), to_x = at_centre(even_x + 1, place.y);
-    const auto from_y = at_centre(place.x, even_y), to_y = at_centre(place.x, even_y + 1);
-    for (std::size_t c = 0; c < 2; ++c) found.dx[c] = to_x[c] - from_x[c], found.dy[c] = to_y[c] - from_y[c];
-    return found;
-  };
-  for (std::uint32_t set = 0; set < 2; ++set) {
-    if (!texture_points[set]) continue;
-    const TexturePlace<float> at =
-        rules_.derivatives == Derivatives::quad && !by_pixel
-            ? place_in_quad(set)
-            : place_on_triangle<float>({v[0]->uvs[set], v[1]->uvs[set], v[2]->uvs[set]}, surface.planes, x, y, weights);
-    *texture_points[set] = {vector_of(at.uv), along_sides(at, footprint)};
-  }
+  const SetupSurface& surface = triangles_.surfaces[triangle];
+  Point point{.surface = surface,
+              .vertices = {},
+              .x = static_cast<float>(place.x) + (by_pixel ? 0.5f : place.u) - surface.anchor_x,
+              .y = static_cast<float>(place.y) + (by_pixel ? 0.5f : place.v) - surface.anchor_y,
+              .weights = {}};
+  for (std::size_t k = 0; k < 3; ++k) point.vertices[k] = &triangles_.vertices[surface.vertices[k]];
+  point.weights = weights_at(surface.planes, point.x, point.y);
+  if (by_pixel) point.weights = clamped(point.weights);
+  return point;
 }
 
+void SurfaceShader::set_inputs(std::uint32_t triangle, const Point& point, const ShaderInputs& shader,
+                               PointInputs<float>& inputs) const {
+  const SetupSurface& surface = point.surface;
+  const TriangleInputs<float> of_triangle{triple<float>(triangles_.attributes[triangle].normal),
+                                          surface.turned ? -1.0f : 1.0f, triple<float>(glm::vec3(surface.tangent)),
+                                          shader.has_tangents ? point.vertices[0]->tangent_sign : surface.tangent.w};
+  set_attributes(
+      shader, of_triangle, [&](auto member) { return point.attribute(member); }, inputs);
+}
+
+SurfaceShader::TexturePoint SurfaceShader::texture_point(const Invocation& invocation, const Point& point,
+                                                         std::size_t set) const {
+  const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
+  TexturePlace<float> at;
+  if (rules_.derivatives == Derivatives::quad && !by_pixel) {
+    // Slopes between the centres of the pixel and of its neighbours in the quad.
+    const auto uv_at_centre = [&](std::int32_t x, std::int32_t y) {
+      Point centre = point;
+      centre.weights = weights_at(point.surface.planes, static_cast<float>(x) + 0.5f - point.surface.anchor_x,
+                                  static_cast<float>(y) + 0.5f - point.surface.anchor_y);
+      return centre.uv(set);
+    };
+    const auto [x, y] = std::pair(invocation.place.x, invocation.place.y);
+    const auto here = uv_at_centre(x, y), beside = uv_at_centre(x ^ 1, y), above_or_below = uv_at_centre(x, y ^ 1);
+    at.uv = point.uv(set);
+    for (std::size_t c = 0; c < 2; ++c) {
+      at.dx[c] = x & 1 ? here[c] - beside[c] : beside[c] - here[c];
+      at.dy[c] = y & 1 ? here[c] - above_or_below[c] : above_or_below[c] - here[c];
+    }
+  } else {
+    at = place_on_triangle<float>(point.uvs(set), point.surface.planes, point.x, point.y, point.weights);
+  }
+  return {vector_of(at.uv), along_sides(at, by_pixel ? Footprint() : invocation.footprint)};
+}
+
+template <std::size_t kMost>
 void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRequests* texels,
                                 PointInputs<float>* inputs) const {
   const ShaderInputs shader = inputs_of(invocations[0].triangle);
-  std::array<std::array<TexturePoint, kMostInvocations>, 2> points;  // by uv set
+  std::array<std::array<TexturePoint, kMost>, 2> points;  // by uv set
   std::array<bool, 2> reads_set{};
   for_each_texture<float>(shader.material,
                           [&](TextureRole, const Texture& texture, auto) { reads_set[texture.uv_set] = true; });
-  for (std::size_t i = 0; i < invocations.size(); ++i)
-    set_point(invocations[i], shader, inputs ? &inputs[i] : nullptr,
-              {reads_set[0] ? &points[0][i] : nullptr, reads_set[1] ? &points[1][i] : nullptr});
+  for (std::size_t i = 0; i < invocations.size(); ++i) {
+    const Point point = point_at(invocations[i].triangle, invocations[i].place);
+    if (inputs) set_inputs(invocations[i].triangle, point, shader, inputs[i]);
+    for (std::size_t set = 0; set < 2; ++set)
+      if (reads_set[set]) points[set][i] = texture_point(invocations[i], point, set);
+  }
+  std::array<glm::vec2, kMost> uvs;
+  std::array<FilterPlan, kMost> plans;
+  std::array<glm::vec4, kMost> values;
   const bool is_kept = texels && texels->are_kept();
   const int taps = rules_.colors == SurfaceColors::by_pixel ? 0 : rules_.texture_taps;
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& given, auto texel) {
@@ -750,19 +848,24 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
     const ColorSpace space = space_of(role);
     const MipChain& chain = textures_->chain(texture.image, space);
     const auto& at = points[texture.uv_set];
-    std::array<float, kMostInvocations> lods;
+    std::array<float, kMost> lods;
     for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = squared_footprint(at[i].slopes, chain.levels[0]);
     for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
     for (std::size_t i = 0; i < invocations.size(); ++i) {
-      const FilterPlan plan = taps > 0 ? footprint_plan(chain, texture, at[i].slopes, taps)
-                                       : filter_plan(chain, texture, at[i].slopes, lods[i]);
-      if (texels && !is_kept) texels->count(plan.texels());
-      if (!inputs && !is_kept) continue;
-      const glm::vec4 value =
-          is_kept ? filtered(chain, texture, at[i].uv, plan, noting(texels, texture.image, space))
-                  : filtered(chain, texture, at[i].uv, plan, [](std::size_t, std::uint32_t, std::uint32_t) {});
-      if (!inputs) continue;
-      const float last = role != TextureRole::normal ? value.a : plan.is_minified ? 1.0f : 0.0f;
+      uvs[i] = at[i].uv;
+      plans[i] = taps > 0 ? footprint_plan(chain, texture, at[i].slopes, taps)
+                          : filter_plan(chain, texture, at[i].slopes, lods[i]);
+      if (texels && !is_kept) texels->count(plans[i].texels());
+    }
+    if (!inputs && !is_kept) return;
+    if (kMost == 1) {
+      values[0] = filtered(chain, texture, uvs[0], plans[0], noting(is_kept ? texels : nullptr, texture.image, space));
+    } else {
+      filter_side_by_side(chain, texture, std::span(uvs).first(invocations.size()), plans, values.data());
+    }
+    for (std::size_t i = 0; inputs && i < invocations.size(); ++i) {
+      const glm::vec4& value = values[i];
+      const float last = role != TextureRole::normal ? value.a : plans[i].is_minified ? 1.0f : 0.0f;
       inputs[i].*texel = {value.r, value.g, value.b, last};
     }
   });
@@ -774,7 +877,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
     return with_limited_alpha(run_program(program_place({triangle, place, footprint}, true), texels));
   const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
-  find_inputs({&invocation, 1}, texels, &inputs);
+  find_inputs<1>({&invocation, 1}, texels, &inputs);
   SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
   const Material& material = this->material(triangle);
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
@@ -787,18 +890,11 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
 }
 
 std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
-  // Invocations of one shader, which wait until there are enough of them.
-  struct Batch {
-    std::size_t work;  // index into works_
-    std::vector<Invocation> invocations;
-    std::vector<std::size_t> places;  // of their colours
-  };
   std::vector<glm::vec3> colors(invocations.size());
   std::array<PointInputs<float>, kMostInvocations> inputs;
   std::array<glm::vec3, kMostInvocations> lit;
-  const auto finish = [&](Batch& batch) {
-    if (batch.invocations.empty()) return;
-    find_inputs(batch.invocations, texels, inputs.data());
+  Batches batches(*this, [&](const Batch& batch) {
+    find_inputs<kMostInvocations>(batch.invocations, texels, inputs.data());
     lit_colors(inputs_of(batch.invocations[0].triangle), frame_.lighting, inputs.data(), batch.places.size(),
                lit.data());
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
@@ -806,37 +902,22 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
       color = stored_color(lit[i]);
       round_to(rules_.stored_as, color);
     }
-    batch.invocations.clear();
-    batch.places.clear();
-  };
+  });
   const bool is_kept = texels && texels->are_kept();  // requests are kept in order
   std::vector<std::size_t> of_programs;               // numbers of invocations
-  std::vector<Batch> batches;
-  std::size_t current = 0;  // most invocations have the shader of the one before
   for (std::size_t i = 0; i < invocations.size(); ++i) {
     const Invocation& invocation = invocations[i];
     const std::uint32_t triangle = invocation.triangle;
     if (!is_flat(triangle) && is_program(triangle)) {
       of_programs.push_back(i);
-      continue;
-    }
-    if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
+    } else if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
       colors[i] = color(triangle, invocation.place, invocation.footprint, texels);
       end_request(texels);
-      continue;
+    } else {
+      batches.add(invocation, i);
     }
-    const std::size_t work = work_index(triangles_.surfaces[triangle].material, inputs_of(triangle));
-    if (current >= batches.size() || batches[current].work != work) {
-      current = 0;
-      while (current < batches.size() && batches[current].work != work) ++current;
-      if (current == batches.size()) batches.push_back({work, {}, {}});
-    }
-    Batch& batch = batches[current];
-    batch.invocations.push_back(invocation);
-    batch.places.push_back(i);
-    if (batch.places.size() == kMostInvocations) finish(batch);
   }
-  for (Batch& batch : batches) finish(batch);
+  batches.finish();
   for_each_draw(invocations, of_programs,
                 [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>& numbers) {
                   std::vector<glm::vec4> found(places.size());
@@ -878,7 +959,15 @@ void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place
     return;
   }
   const Invocation invocation{triangle, place, footprint};
-  find_inputs({&invocation, 1}, &texels, nullptr);
+  find_inputs<1>({&invocation, 1}, &texels, nullptr);
+}
+
+void SurfaceShader::count_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const {
+  Batches batches(*this,
+                  [&](const Batch& batch) { find_inputs<kMostInvocations>(batch.invocations, &texels, nullptr); });
+  for (const Invocation& invocation : invocations)
+    if (!is_flat(invocation.triangle)) batches.add(invocation, 0);
+  batches.finish();
 }
 
 }  // namespace beampipe

@@ -115,6 +115,8 @@ class SurfaceShader {
   // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
   void add_texels(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                   TexelRequests& texels) const;
+  // The same for several invocations, none of them of a program, if requests are not kept.
+  void count_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const;
 
   // Does a program shade the triangle, which is not flat?
   bool is_program(std::uint32_t triangle) const { return triangles_.surfaces[triangle].material == kProgramSurface; }
@@ -148,6 +150,8 @@ class SurfaceShader {
   // roughness are read once, where four texels cover the footprint. 0 for flat and unlit triangles. `texels`: as above.
   float light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                     TexelRequests* texels = nullptr) const;
+  // The same for several invocations, side by side, whose requests are not kept.
+  std::vector<float> light_ranges(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const;
 
   // A cutout seen from one place: its four texels there tell alpha around it, or which part of the footprint passes.
   struct CutoutPatch {
@@ -240,6 +244,10 @@ class SurfaceShader {
     TextureSlopes slopes;
   };
 
+  struct Batch;
+  template <class Run>
+  class Batches;
+
   glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                    TexelRequests* texels) const;
 
@@ -269,13 +277,23 @@ class SurfaceShader {
   // As the frame's target has it.
   glm::vec3 stored_color(const glm::vec3& linear) const;
 
-  // Sets what the shader knows of a point without its textures, and where it reads them, by set of texture coordinates.
-  // Null: nobody wants to know.
-  void set_point(const Invocation& invocation, const ShaderInputs& shader, PointInputs<float>* inputs,
-                 const std::array<TexturePoint*, 2>& texture_points) const;
-  // The same for several points, with textures. `invocations`: of one shader, at least one and at most
-  // kMostInvocations; a single one if texel requests are kept. `inputs`: one each, or null: only texels are noted.
+  struct Point;
+  Point point_at(std::uint32_t triangle, const ShadingPlace& place) const;
+  // What the shader knows of a point of a triangle without its textures.
+  void set_inputs(std::uint32_t triangle, const Point& point, const ShaderInputs& shader,
+                  PointInputs<float>& inputs) const;
+  // Where an invocation, whose point is given, reads textures that have this set of coordinates.
+  TexturePoint texture_point(const Invocation& invocation, const Point& point, std::size_t set) const;
+  // What the shader knows of several points, with textures. `invocations`: of one shader, at least one and at most
+  // kMost, which is one if texel requests are kept. `inputs`: one each, or null: only texels are noted.
+  template <std::size_t kMost>
   void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels, PointInputs<float>* inputs) const;
+  // What light_range() of an invocation depends on; its shader is `shader`.
+  AreaInputs<float> area_inputs(const Invocation& invocation, const ShaderInputs& shader, TexelRequests* texels) const;
+  // May its light vary within an area?
+  bool may_vary(std::uint32_t triangle) const {
+    return !is_flat(triangle) && !is_program(triangle) && !material(triangle).unlit;
+  }
   // Alpha, where texture_alpha(texture, uv, slopes) says that of the texture.
   template <class TextureAlpha>
   float alpha_there(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
@@ -373,6 +391,9 @@ class TileShader {
   float light_range(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
                     TexelRequests* texels = nullptr) const {
     return shader_->light_range(triangle, place(pixel, u, v), footprint, texels);
+  }
+  std::vector<float> light_ranges(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
+    return shader_->light_ranges(invocations, texels);
   }
   bool has_verdict(std::uint32_t triangle) const { return shader_ && shader_->has_verdict(triangle); }
   bool tests_early(std::uint32_t triangle) const { return shader_ && shader_->tests_early(triangle); }

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <type_traits>
 
+#include "simd/scalar.h"
 #include "stages/surface/mip_chain.h"
 #include "traces/material.h"
 
@@ -49,79 +51,77 @@ inline float level_of_detail(const TextureSlopes& slopes, const MipLevel& image)
   return level_of_detail(squared_footprint(slopes, image));
 }
 
-// The largest whole number that is not above x, which is less than 2^31 away from 0. std::floor is a function call on
-// machines that may lack the instruction.
-inline std::int32_t floor_of(float x) {
-  const auto whole = static_cast<std::int32_t>(x);
-  return whole - (static_cast<float>(whole) > x);
-}
-
-// The number of a texel as a number within the image. It lies between -1 and 2 * size, as in_texels() sees to, or
-// anywhere with Wrap::clamp. There is no division.
-inline std::uint32_t wrapped(std::int32_t texel, std::uint32_t size, Wrap wrap) {
-  const auto n = static_cast<std::int32_t>(size);
-  if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(std::clamp(texel, 0, n - 1));
-  const std::int32_t period = wrap == Wrap::repeat ? n : 2 * n;
-  texel += texel < 0 ? period : 0;
-  for (int i = 0; i < 2; ++i) texel -= texel >= period ? period : 0;
-  return static_cast<std::uint32_t>(texel < n ? texel : 2 * n - 1 - texel);
-}
-
-// A texture coordinate in texels of a level. Coordinates that are not finite, or so large that texels cannot be told
-// apart, become 0.
-inline float in_texels(float coordinate, std::uint32_t size, Wrap wrap) {
-  constexpr float kMost = 1 << 24;
-  if (!(std::abs(coordinate) < kMost)) return 0.0f;
-  // the period of `mirror`
-  if (wrap != Wrap::clamp) coordinate -= 2.0f * static_cast<float>(floor_of(0.5f * coordinate));
-  return std::clamp(coordinate, -1.0f, 3.0f) * static_cast<float>(size);
-}
-
-// The two texels, in a row or column of this size, around a place in texels, and the share of the second one.
-struct TexelPair {
-  std::uint32_t first, second;
-  float share;
+// The two texels, in a row or column, around a place in texels, and the share of the second one.
+template <class Real, class Int>
+struct TexelPairOf {
+  Int first, second;
+  Real share;
 };
-inline TexelPair texels_around(float place, std::uint32_t size, Wrap wrap) {
-  const std::int32_t first = floor_of(place - 0.5f);
-  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), place - 0.5f - static_cast<float>(first)};
+
+namespace scalar {
+#include "stages/surface/texel_place-inl.h"
+}
+using namespace scalar;
+
+inline std::uint32_t wrapped(std::int32_t texel, std::uint32_t size, Wrap wrap) {
+  return static_cast<std::uint32_t>(wrapped(texel, static_cast<std::int32_t>(size), wrap));
 }
 
-// Calls read(level, x, y) with each texel that is read. Inlined, because a vector that comes back from a call in parts
-// and is then used as a whole makes the processor wait.
+using TexelPair = TexelPairOf<float, std::uint32_t>;
+// `coordinate`: of a texture; `size`: of a level.
+inline TexelPair texels_at(float coordinate, std::uint32_t size, Wrap wrap) {
+  const auto [first, second, share] =
+      texels_around(in_texels(coordinate, static_cast<float>(size), wrap), static_cast<std::int32_t>(size), wrap);
+  return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second), share};
+}
+
+// Four texels, and the shares of the right and of the lower ones.
+struct FourTexels {
+  const glm::u8vec4 &upper_left, &upper_right, &lower_left, &lower_right;
+  float right_share, lower_share;
+};
+
+// Inlined, because a vector that comes back from a call in parts and is then used as a whole makes the processor wait.
+[[gnu::always_inline]] inline glm::vec4 mixed_texels(const TexelValues& values, const FourTexels& four) {
+  const float left_share = 1.0f - four.right_share, upper_share = 1.0f - four.lower_share;
+  const auto mixed = [&](const std::array<float, 256>& value, int channel) __attribute__((always_inline)) {
+    const float upper =
+        value[four.upper_left[channel]] * left_share + value[four.upper_right[channel]] * four.right_share;
+    const float lower =
+        value[four.lower_left[channel]] * left_share + value[four.lower_right[channel]] * four.right_share;
+    return upper * upper_share + lower * four.lower_share;
+  };
+  return {mixed(values.color, 0), mixed(values.color, 1), mixed(values.color, 2), mixed(values.alpha, 3)};
+}
+
+// Calls read(level, x, y) with each texel that is read.
 template <class Read>
 [[gnu::always_inline]] inline glm::vec4 mixed_texels(const MipChain& chain, std::size_t level, const TexelPair& columns,
                                                      const TexelPair& rows, Read&& read) {
   const MipLevel& image = chain.levels[level];
-  const TexelValues& values = texel_values(chain.space);
   for (const std::uint32_t row : {rows.first, rows.second})
     for (const std::uint32_t column : {columns.first, columns.second}) read(level, column, row);
-  const glm::u8vec4& upper_left = image.texel(columns.first, rows.first);
-  const glm::u8vec4& upper_right = image.texel(columns.second, rows.first);
-  const glm::u8vec4& lower_left = image.texel(columns.first, rows.second);
-  const glm::u8vec4& lower_right = image.texel(columns.second, rows.second);
-  const float left_share = 1.0f - columns.share, upper_share = 1.0f - rows.share;
-  const auto mixed = [&](const std::array<float, 256>& value, int channel) {
-    const float upper = value[upper_left[channel]] * left_share + value[upper_right[channel]] * columns.share;
-    const float lower = value[lower_left[channel]] * left_share + value[lower_right[channel]] * columns.share;
-    return upper * upper_share + lower * rows.share;
-  };
-  return {mixed(values.color, 0), mixed(values.color, 1), mixed(values.color, 2), mixed(values.alpha, 3)};
+  return mixed_texels(
+      texel_values(chain.space),
+      {image.texel(columns.first, rows.first), image.texel(columns.second, rows.first),
+       image.texel(columns.first, rows.second), image.texel(columns.second, rows.second), columns.share, rows.share});
 }
 
 template <class Read>
 [[gnu::always_inline]] inline glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::size_t level,
                                                        const glm::vec2& uv, Filter filter, Read&& read) {
   const MipLevel& image = chain.levels[level];
-  const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
   if (filter == Filter::nearest) {
-    const std::uint32_t column = wrapped(floor_of(u), image.width, texture.wrap_u);
-    const std::uint32_t row = wrapped(floor_of(v), image.height, texture.wrap_v);
+    const auto nearest = [](float coordinate, std::uint32_t size, Wrap wrap) {
+      return wrapped(floor_of(in_texels(coordinate, static_cast<float>(size), wrap)), size, wrap);
+    };
+    const std::uint32_t column = nearest(uv.x, image.width, texture.wrap_u);
+    const std::uint32_t row = nearest(uv.y, image.height, texture.wrap_v);
     read(level, column, row);
     return texel_values(chain.space)(image.texel(column, row));
   }
-  return mixed_texels(chain, level, texels_around(u, image.width, texture.wrap_u),
-                      texels_around(v, image.height, texture.wrap_v), read);
+  return mixed_texels(chain, level, texels_at(uv.x, image.width, texture.wrap_u),
+                      texels_at(uv.y, image.height, texture.wrap_v), read);
 }
 
 // The mean of the nearest texels over a rectangle that is no larger than a texel: of four texels by their parts.
@@ -134,10 +134,9 @@ glm::vec4 mean_of_steps(const MipChain& chain, const Texture& texture, const glm
     around.share = std::clamp((around.share - 0.5f) / std::max(side, 1e-6f) + 0.5f, 0.0f, 1.0f);
     return around;
   };
-  const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
   return mixed_texels(
-      chain, 0, parts(texels_around(u, image.width, texture.wrap_u), step_width.x * static_cast<float>(image.width)),
-      parts(texels_around(v, image.height, texture.wrap_v), step_width.y * static_cast<float>(image.height)), read);
+      chain, 0, parts(texels_at(uv.x, image.width, texture.wrap_u), step_width.x * static_cast<float>(image.width)),
+      parts(texels_at(uv.y, image.height, texture.wrap_v), step_width.y * static_cast<float>(image.height)), read);
 }
 
 // The four texels around a place in a level, as filtered_level() mixes them: upper left, upper right, lower left, lower
@@ -151,8 +150,8 @@ TexelQuad texels_around(const MipChain& chain, const Texture& texture, std::size
                         Read&& read) {
   const MipLevel& image = chain.levels[level];
   TexelQuad quad;
-  quad.columns = texels_around(in_texels(uv.x, image.width, texture.wrap_u), image.width, texture.wrap_u);
-  quad.rows = texels_around(in_texels(uv.y, image.height, texture.wrap_v), image.height, texture.wrap_v);
+  quad.columns = texels_at(uv.x, image.width, texture.wrap_u);
+  quad.rows = texels_at(uv.y, image.height, texture.wrap_v);
   std::size_t i = 0;
   for (const std::uint32_t row : {quad.rows.first, quad.rows.second})
     for (const std::uint32_t column : {quad.columns.first, quad.columns.second}) {
@@ -218,24 +217,47 @@ inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, con
   return filter_plan(chain, texture, slopes, level_of_detail(slopes, chain.levels[0]));
 }
 
+// Calls visit(at) with the texture coordinates of each probe.
+template <class Visit>
+void for_each_probe(const FilterPlan& plan, const glm::vec2& uv, Visit&& visit) {
+  for (float j = 0; j < plan.rows; ++j) {
+    const glm::vec2 row = plan.rows == 1 ? uv : uv + plan.across * ((j + 0.5f) / plan.rows - 0.5f);
+    for (float i = 0; i < plan.probes; ++i)
+      visit(plan.probes == 1 ? row : row + plan.along * ((i + 0.5f) / plan.probes - 0.5f));
+  }
+}
+
+class MeanOfProbes {
+ public:
+  explicit MeanOfProbes(const FilterPlan& plan) : plan_(plan) {}
+
+  // color_in(level): of the probe.
+  template <class ColorIn>
+  void add(ColorIn&& color_in) {
+    const glm::vec4 color = color_in(plan_.level);
+    sum_ += plan_.has_next ? color * (1.0f - plan_.share) + color_in(plan_.level + 1) * plan_.share : color;
+  }
+
+  glm::vec4 color() const {
+    const float probes = plan_.probes * plan_.rows;
+    return probes == 1 ? sum_ : sum_ / probes;
+  }
+
+ private:
+  const FilterPlan& plan_;
+  glm::vec4 sum_{0.0f};
+};
+
 // Linear RGBA. Calls read(level, x, y) with each texel that is read.
 template <class Read>
 glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const FilterPlan& plan,
                    Read&& read) {
   if (plan.is_step()) return mean_of_steps(chain, texture, uv, plan.step_width, read);
-  glm::vec4 sum(0.0f);
-  for (float j = 0; j < plan.rows; ++j) {
-    const glm::vec2 row = plan.rows == 1 ? uv : uv + plan.across * ((j + 0.5f) / plan.rows - 0.5f);
-    for (float i = 0; i < plan.probes; ++i) {
-      const glm::vec2 at = plan.probes == 1 ? row : row + plan.along * ((i + 0.5f) / plan.probes - 0.5f);
-      const glm::vec4 color = filtered_level(chain, texture, plan.level, at, plan.filter, read);
-      sum += plan.has_next ? color * (1.0f - plan.share) +
-                                 filtered_level(chain, texture, plan.level + 1, at, plan.filter, read) * plan.share
-                           : color;
-    }
-  }
-  const float probes = plan.probes * plan.rows;
-  return probes == 1 ? sum : sum / probes;
+  MeanOfProbes mean(plan);
+  for_each_probe(plan, uv, [&](const glm::vec2& at) {
+    mean.add([&](std::size_t level) { return filtered_level(chain, texture, level, at, plan.filter, read); });
+  });
+  return mean.color();
 }
 template <class Read>
 glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes,

@@ -8,6 +8,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 #include "tests/test.h"
+#include "traces/scenes.h"
 
 namespace beampipe::texture_memory_test {
 
@@ -187,6 +188,27 @@ TEST(TextureMemory, WithoutAModelOnlyLogicalBytesAreCounted) {
       stage.texture_sector_bytes = stage.texture_l2_bytes = stage.texture_dram_bytes = 0;
     }
     EXPECT_EQ(stages_of(spec, trace, off), modelled) << spec;
+  }
+}
+
+// Without requests to keep in order, surfaces are shaded side by side. A small pool is collected again and again.
+TEST(TextureMemory, WithoutAModelPicturesAndShadingsAreTheSame) {
+  FrameInput on, off;
+  off.memory.modelled = false;
+  for (const char* scene : {"room", "classroom"}) {
+    const Trace trace = make_scene(scene, {.width = 96, .height = 54});
+    for (const char* spec : {"beam", "beam:pool=16", "beam:tolerance=0.02", "beam:at=covered", "beam:order=sorted",
+                             "beam:order=stream", "msaa:8", "deferred"}) {
+      const FrameResult with = parse_technique(spec).render(trace, 0, on),
+                        without = parse_technique(spec).render(trace, 0, off);
+      EXPECT_EQ(with.image.rgba, without.image.rgba) << scene << ' ' << spec;
+      for (const auto& [name, values] : without.pixel_counters)
+        EXPECT_TRUE(values == with.pixel_counters.at(name)) << scene << ' ' << spec << ": " << name;
+      for (std::size_t i = 0; i < with.stages.size(); ++i) {
+        EXPECT_EQ(with.stages[i].ops, without.stages[i].ops) << scene << ' ' << spec << ' ' << with.stages[i].stage;
+        EXPECT_EQ(with.stages[i].texture_bytes, without.stages[i].texture_bytes) << scene << ' ' << spec;
+      }
+    }
   }
 }
 

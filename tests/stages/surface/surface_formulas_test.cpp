@@ -198,23 +198,6 @@ TEST(SurfaceFormulas, TangentsAreMadePerpendicular) {
   EXPECT_LT(glm::length(normal_of({0.5f, 1, 0.5f, 0}) - glm::vec3(0, 1, 0)), 1e-6f);
 }
 
-// All attributes at once, number by number as one is.
-TEST(SurfaceFormulas, AttributesAreInterpolatedTogether) {
-  Random random(5);
-  constexpr std::size_t kNumbers = sizeof(SurfaceVertex) / sizeof(float);
-  std::array<std::array<float, kNumbers>, 3> numbers;
-  std::array<SurfaceVertex, 3> vertices;
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (float& number : numbers[k]) number = random.real32(-10, 10);
-    vertices[k] = std::bit_cast<SurfaceVertex>(numbers[k]);
-  }
-  const Barycentrics<float> weights{random.real32(-1, 2), random.real32(-1, 2)};
-  const SurfaceVertex found = interpolated<float>({&vertices[0], &vertices[1], &vertices[2]}, weights);
-  const auto found_numbers = std::bit_cast<std::array<float, kNumbers>>(found);
-  for (std::size_t i = 0; i < kNumbers; ++i)
-    EXPECT_EQ(found_numbers[i], interpolated(numbers[0][i], numbers[1][i], numbers[2][i], weights)) << i;
-}
-
 TEST(SurfaceFormulas, UnlitAndEmissive) {
   SurfaceMaterial<float> surface{{{0.5f, 0.25f, 1}, 0, 1, {0, 0, 1}, {0, 0, 1}}, {2, 0, 0.5f}, 1};
   Material material;

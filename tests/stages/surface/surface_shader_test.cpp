@@ -410,27 +410,48 @@ TEST(SurfaceShader, SideBySideColorsAreTheSame) {
   for (const ShadingRules& rules :
        {ShadingRules{}, ShadingRules{.derivatives = Derivatives::quad},
         ShadingRules{.stored_as = AccumulatorFormat::fp16}, ShadingRules{.storage = MaterialStorage::gbuffer},
-        ShadingRules{.colors = SurfaceColors::by_pixel}}) {
+        ShadingRules{.colors = SurfaceColors::by_pixel}, ShadingRules{.texture_taps = kAnisotropic},
+        ShadingRules{.texture_taps = 4}, ShadingRules{.texture_taps = 16}}) {
     const ShadedScene scene(materials.trace, rules);
-    // Runs of a few invocations of one triangle, at places that need not be in it.
+    // Runs of a few invocations of one triangle, at places that need not be in it, of areas of all sizes.
     std::vector<Invocation> invocations;
     for (std::uint64_t triangle = 0; invocations.size() < 20'000; triangle = random.word())
       for (std::uint64_t left = random.word() % 8; left > 0; --left)
         invocations.push_back(
             {static_cast<std::uint32_t>(triangle % scene.triangles.surfaces.size()),
              {static_cast<std::int32_t>(random.word() % 64), static_cast<std::int32_t>(random.word() % 64),
-              static_cast<float>(random.real(0, 1)), static_cast<float>(random.real(0, 1))}});
+              static_cast<float>(random.real(0, 1)), static_cast<float>(random.real(0, 1))},
+             {static_cast<float>(random.real(0, 1)), static_cast<float>(random.real(-0.5, 0.5)),
+              static_cast<float>(random.real(0, 1))}});
+    std::uint64_t texels = 0;
+    for (const auto& [triangle, place, footprint] : invocations) {
+      TexelRequests one(nullptr);
+      scene.shader.add_texels(triangle, place, footprint, one);
+      texels += one.texels();
+    }
     on_every_target([&] {
-      const std::vector<glm::vec3> colors = scene.shader.colors(invocations);
+      TexelRequests of_colors(nullptr), of_ranges(nullptr), counted(nullptr);
+      const std::vector<glm::vec3> colors = scene.shader.colors(invocations, &of_colors);
+      const std::vector<float> ranges = scene.shader.light_ranges(invocations, &of_ranges);
+      scene.shader.count_texels(invocations, counted);
+      EXPECT_EQ(of_colors.texels(), texels);
+      EXPECT_EQ(counted.texels(), texels);
       ASSERT_EQ(colors.size(), invocations.size());
+      ASSERT_EQ(ranges.size(), invocations.size());
+      TexelRequests of_range(nullptr);
       for (std::size_t i = 0; i < colors.size(); ++i) {
-        const glm::vec3 expected = scene.shader.color(invocations[i].triangle, invocations[i].place);
+        const auto& [triangle, place, footprint] = invocations[i];
+        const glm::vec3 expected = scene.shader.color(triangle, place, footprint);
         for (int c = 0; c < 3; ++c)
           ASSERT_EQ(std::bit_cast<std::uint32_t>(colors[i][c]), std::bit_cast<std::uint32_t>(expected[c]))
-              << i << ", triangle " << invocations[i].triangle << ": " << colors[i][c] << " and " << expected[c];
+              << i << ", triangle " << triangle << ": " << colors[i][c] << " and " << expected[c];
+        const float range = scene.shader.light_range(triangle, place, footprint, &of_range);
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(ranges[i]), std::bit_cast<std::uint32_t>(range)) << i;
       }
+      EXPECT_EQ(of_ranges.texels(), of_range.texels());
     });
     EXPECT_TRUE(scene.shader.colors({}).empty());
+    EXPECT_TRUE(scene.shader.light_ranges({}).empty());
   }
 }
 

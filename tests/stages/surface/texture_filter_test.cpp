@@ -1,6 +1,9 @@
 // Compares texture filtering with its definition in double precision.
 #include "stages/surface/texture_filter.h"
 
+#include "stages/surface/footprint_filter.h"
+#include "stages/surface/texture_taps.h"
+#include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
@@ -61,8 +64,8 @@ TEST(TextureFilter, WrapModesAreEnumerated) {
   EXPECT_EQ(line(3, Wrap::clamp), (Texels{0, 0, 1, 2, 2, 2, 2, 2}));
   EXPECT_EQ(line(3, Wrap::mirror), (Texels{0, 0, 1, 2, 2, 1, 0, 0}));
   for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) EXPECT_EQ(line(1, wrap), Texels(4, 0));
-  EXPECT_EQ(wrapped(-7, 3, Wrap::clamp), 0u);
-  EXPECT_EQ(wrapped(9, 3, Wrap::clamp), 2u);
+  EXPECT_EQ(wrapped(-7, 3u, Wrap::clamp), 0u);
+  EXPECT_EQ(wrapped(9, 3u, Wrap::clamp), 2u);
 }
 
 // The texel that a coordinate in texels falls on, in double precision.
@@ -171,6 +174,42 @@ TEST(TextureFilter, ProbesLieEvenlyAlongTheLongerSide) {
   EXPECT_EQ(columns_read(2, 2, 2, 32.125f), (Columns{31, 32}));
   // A footprint as wide as it is long.
   EXPECT_EQ(columns_read(8, 16, 3, 16.5f), (Columns{16}));
+}
+
+// More look-ups than are made at once, of all filters, also where coordinates are no numbers.
+TEST(TextureFilter, SideBySideValuesAreTheSame) {
+  Random random(7);
+  for (const auto& [width, height] : {std::pair{8u, 8u}, {5u, 3u}, {1u, 16u}, {64u, 2u}, {1u, 1u}}) {
+    const MipChain chain = make_mip_chain(random_image(random, width, height), ColorSpace::srgb);
+    for (int round = 0; round < 100; ++round) {
+      Texture texture;
+      texture.wrap_u = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
+      texture.wrap_v = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
+      texture.magnify = random.pick(std::array{Filter::nearest, Filter::linear});
+      texture.minify = random.pick(std::array{Filter::nearest, Filter::linear});
+      texture.mip = random.pick(std::array{MipFilter::none, MipFilter::nearest, MipFilter::linear});
+      texture.anisotropy = static_cast<std::uint32_t>(random.pick(std::array{1, 16}));
+      std::vector<glm::vec2> uvs(static_cast<std::size_t>(random.integer(0, 64)));
+      std::vector<FilterPlan> plans;
+      for (glm::vec2& uv : uvs) {
+        const auto coordinate = [&] {
+          return random.one_in(16) ? random.pick(std::array{kNan, kInfinity, -kInfinity, 1e30f, 16777215.5f})
+                                   : random.real32(-3, 4);
+        };
+        const auto slope = [&] { return static_cast<float>(std::exp2(random.real(-8, 2)) * random.real(-1, 1)); };
+        uv = {coordinate(), coordinate()};
+        const TextureSlopes slopes{{slope(), slope()}, {slope(), slope()}};
+        plans.push_back(random.one_in(2) ? filter_plan(chain, texture, slopes)
+                                         : footprint_plan(chain, texture, slopes, random.pick(std::array{1, 4, 16})));
+      }
+      on_every_target([&] {
+        std::vector<glm::vec4> values(uvs.size());
+        filter_side_by_side(chain, texture, uvs, plans, values.data());
+        for (std::size_t i = 0; i < uvs.size(); ++i)
+          ASSERT_EQ(values[i], filtered(chain, texture, uvs[i], plans[i], kIgnored)) << i << ", " << uvs[i].x;
+      });
+    }
+  }
 }
 
 TEST(TextureFilter, MagnificationWithNearestHasTheTexelsColors) {
