@@ -1,11 +1,14 @@
 // The time of kernels per item, on one core with its best instruction set. Each item is a pixel with a random
-// triangle around it, up to three pixels wide, as in fine meshes.
+// triangle around it, up to three pixels wide, as in fine meshes. limit_ns: what the operations of a kernel's formula
+// take in full vectors.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <random>
 #include <vector>
 
+#include "bench/vector_peak.h"
 #include "simd/coverage.h"
 #include "simd/depth_range.h"
 #include "simd/depth_span.h"
@@ -16,6 +19,7 @@
 #include "simd/quad_rows.h"
 #include "simd/vertex_transform.h"
 #include "simd/window_owners.h"
+#include "stages/cost/plane_cost.h"
 
 namespace beampipe {
 namespace {
@@ -41,6 +45,36 @@ void count_items(benchmark::State& state, std::size_t items) {
       static_cast<double>(items) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+// The most of several runs.
+double operations_per_ns() {
+  static const double most = [] {
+    using Clock = std::chrono::steady_clock;
+    double found = 0;
+    float result = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const Clock::time_point start = Clock::now();
+      const std::uint64_t operations = run_vector_operations(result);
+      const std::chrono::duration<double, std::nano> time = Clock::now() - start;
+      found = std::max(found, static_cast<double>(operations) / time.count());
+    }
+    benchmark::DoNotOptimize(result);
+    return found;
+  }();
+  return most;
+}
+
+void vector_peak(benchmark::State& state) {
+  float result = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(run_vector_operations(result));
+  state.counters["operations_per_ns"] = operations_per_ns();
+}
+BENCHMARK(vector_peak);
+
+// `of_item`: the operations of one item.
+void set_limit(benchmark::State& state, const OperationCounts& of_item) {
+  state.counters["limit_ns"] = static_cast<double>(of_item.total()) / operations_per_ns();
+}
+
 void coverage_of_pixels(benchmark::State& state) {
   const std::vector<TriangleInPixel> in = triangles_in_pixels();
   std::vector<Coverage<float>> out(in.size());
@@ -49,6 +83,10 @@ void coverage_of_pixels(benchmark::State& state) {
     benchmark::DoNotOptimize(out.data());
   }
   count_items(state, in.size());
+  set_limit(state, count_operations([](OperationCounts& counts) {
+              const Counted<std::int32_t> one(1, counts);
+              coverage_formula<Counted<std::int32_t>, Counted<float>>({{one, one, one}, {one, one, one}});
+            }));
 }
 BENCHMARK(coverage_of_pixels);
 
@@ -85,6 +123,12 @@ void depth_ranges_of_pixels(benchmark::State& state) {
     benchmark::DoNotOptimize(out.data());
   }
   count_items(state, in.size());
+  set_limit(state, count_operations([](OperationCounts& counts) {
+              DepthRangeInput<Counted<float>> input;
+              const Counted<float> one(1.0f, counts);
+              std::fill_n(&input.u[0], sizeof input / sizeof one, one);
+              depth_range_formula(input);
+            }));
 }
 BENCHMARK(depth_ranges_of_pixels);
 
@@ -170,6 +214,12 @@ void orders_of_planes(benchmark::State& state) {
     benchmark::DoNotOptimize(farthest);
   }
   count_items(state, planes.size() - 1);
+  OperationCounts of_position = nearer_cost();
+  of_position += count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    farthest_formula(DepthPlane<Counted<float>>{one, one, one}, one, one, one > one, one);
+  });
+  set_limit(state, of_position * 256);
 }
 BENCHMARK(orders_of_planes);
 

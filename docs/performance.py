@@ -3,7 +3,7 @@
 
 usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
        docs/performance.py threads PROGRAM [--runs N] TRACE...
-       docs/performance.py items PROGRAM [--runs N] TRACE...
+       docs/performance.py items PROGRAM [--runs N] [--peak N] TRACE...
        docs/performance.py memory PROGRAM [--runs N] TRACE...
        docs/performance.py textures PROGRAM [--runs N] TRACE...
        docs/performance.py peers PROGRAM FOLDER [--runs N] TRACE...
@@ -12,7 +12,8 @@ usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
 PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that other work of the
 machine affects all of them alike. A time is the least of the runs, in `growth` their median, with the memory model off.
 `growth` makes its own traces, and draws the plot with gnuplot. `items` prints nanoseconds per item of each stage of
-`beam`, on one thread. `memory` prints what modelling memory costs: a frame's time with the model ÷ that without.
+`beam`, on one thread; with --peak, also what the operations that the stage is charged take at N operations per
+nanosecond (operations_per_ns of vector_peak in build/release/bench/kernels_benchmark). `memory` prints what modelling memory costs: a frame's time with the model ÷ that without.
 `textures` prints what materials cost: a frame's time ÷ that of the same frame with one flat colour for each draw.
 `peers` compares with other renderers, which FOLDER has: peer_gl (llvmpipe) and, if it is there, peer_embree draw the
 triangles of `beampipe export-soup` and print JSON with the least time of a frame, "ms_frame_min".
@@ -94,7 +95,7 @@ def print_threads(arguments):
 
 
 def stage_times(program, trace, folder):
-    """Milliseconds and items of each stage of `beam`, in the order of the pipeline."""
+    """Milliseconds, items and operations of each stage of `beam`, in the order of the pipeline."""
     events = f"{folder}/events.json"
     result = measure.results(program, "run", trace, ["beam"], f"{folder}/out", "--trace-events", events, "--repeat", "3",
                              "--threads", "1", "--no-memory-model")["beam"]
@@ -104,7 +105,7 @@ def stage_times(program, trace, folder):
             if event.get("ph") == "X":
                 spans.setdefault(event["name"], []).append(event["dur"])
     frames = len(spans["vertex_setup"])
-    return {name: (sum(spans[name]) / frames / 1000, max(stage["items_in"], stage["items_out"]))
+    return {name: (sum(spans[name]) / frames / 1000, max(stage["items_in"], stage["items_out"]), stage["ops"]["total"])
             for name, stage in measure.stages(result).items() if name in spans}
 
 
@@ -116,10 +117,16 @@ def print_items(arguments):
         for _ in range(arguments.runs):
             with tempfile.TemporaryDirectory() as folder:
                 runs.append(stage_times(arguments.program, trace, folder))
-        found.append({stage: (min(run[stage][0] for run in runs), runs[0][stage][1]) for stage in runs[0]})
+        found.append({stage: (min(run[stage][0] for run in runs), *runs[0][stage][1:]) for stage in runs[0]})
+
+    def per_item(ms, items, operations):
+        limit = f" ({operations / max(items, 1) / arguments.peak:.1f})" if arguments.peak else ""
+        return f"{1e6 * ms / max(items, 1):.1f}{limit}"
+
     for stage in found[0]:
-        measure.print_row(f"`{stage}`", *(f"{1e6 * ms[stage][0] / max(ms[stage][1], 1):.1f}" for ms in found),
-                          ", ".join(f"{ms[stage][0]:.1f}" for ms in found), ", ".join(str(ms[stage][1]) for ms in found))
+        measure.print_row(f"`{stage}`", *(per_item(*of_trace[stage]) for of_trace in found),
+                          ", ".join(f"{of_trace[stage][0]:.1f}" for of_trace in found),
+                          ", ".join(str(of_trace[stage][1]) for of_trace in found))
 
 
 def print_memory(arguments):
@@ -278,6 +285,8 @@ def main():
         command.add_argument("--runs", type=int, default=5)
         if name == "ratios":
             command.add_argument("--threads", type=int, default=1)
+        if name == "items":
+            command.add_argument("--peak", type=float, metavar="N")
         command.set_defaults(action=action)
     growth = commands.add_parser("growth")
     growth.add_argument("program")
