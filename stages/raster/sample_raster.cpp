@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "simd/population_count.h"
 #include "simd/sample_mask.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/sample_raster_cost.h"
@@ -24,12 +25,11 @@ GridEdges grid_edges(const EdgeSet& set, const CellGrid& grid) {
   return edges;
 }
 
-// The fragments of some triangles, before the samples of their partial cells are tested: in blocks, which stay in the
-// nearest cache.
-class FragmentBlock {
+// The cells of some triangles, before the samples of the partial ones are tested: in blocks, which stay in the nearest
+// cache.
+class CellBlock {
  public:
-  FragmentBlock(const SampledTriangles& in, ClosedDepth* closed, std::vector<SampleFragment>& out,
-                SampleRasterWork& work)
+  CellBlock(const SampledTriangles& in, ClosedDepth* closed, std::vector<SampleFragment>& out, SampleRasterWork& work)
       : sampling_(in.sampling),
         every_sample_(~0u >> (kMaxMaskSamples - in.sampling.pattern.count)),
         closed_(closed),
@@ -43,49 +43,60 @@ class FragmentBlock {
     triangle_ = triangle, depths_ = depths, is_opaque_ = is_opaque;
   }
 
-  // As traverse_quads() visits them. Nothing branches on what is full or hidden, which no processor predicts.
-  void add(std::int32_t left, std::int32_t top, const QuadRow& cells) {
-    if (count_ + 4 * kQuadsPerRow > kFragments) finish();
-    const std::uint32_t edges = static_cast<std::uint32_t>(triangles_ - 1);
-    std::size_t count = count_, partial = partial_, tests = 0;
-    for (std::uint64_t bits = cells.touched; bits != 0; bits &= bits - 1, ++tests) {
-      const int bit = std::countr_zero(bits);
-      const std::int32_t x = left + column_of(bit), y = top + row_of(bit);
-      const bool full = (cells.full >> bit & 1) != 0;
-      const bool hidden =
-          closed_ && closed_->hides_or_closes(x, y, depths_.nearest, depths_.farthest, full & is_opaque_);
-      fragments_[count] = {triangle_, quad_ + static_cast<std::uint32_t>(bit >> 2), x, y, every_sample_};
-      cells_[partial] = {edges, x, y};
-      fragment_[partial] = static_cast<std::uint32_t>(count);
-      partial += !full & !hidden;
-      count += !hidden;
-    }
+  // As traverse_quads() visits them.
+  void add(std::int32_t x, std::int32_t y, const QuadRow& cells) {
+    const std::uint32_t quad = quad_;
     quad_ += kQuadsPerRow;
-    const std::size_t visible = count - count_, full = visible - (partial - partial_);
-    count_ = count, partial_ = partial;
-    if (closed_) closed_->count(tests, tests - visible, is_opaque_ ? full : 0);
+    if (cells.touched == 0) return;
+    std::uint64_t visible = cells.touched;
+    if (closed_) visible &= ~closed_->hides_or_closes(x, y, cells, depths_.nearest, depths_.farthest, is_opaque_);
+    if (visible == 0) return;
+    if (rows_in_block_ == kRows || partial_ + 4 * kQuadsPerRow > kCells) finish();
+    rows_[rows_in_block_++] = {triangle_, quad, x, y, visible, cells.full};
+    const auto edges = static_cast<std::uint32_t>(triangles_ - 1);
+    for (std::uint64_t bits = visible & ~cells.full; bits != 0; bits &= bits - 1) {
+      const int bit = std::countr_zero(bits);
+      cells_[partial_++] = {edges, x + column_of(bit), y + row_of(bit)};
+    }
+    visible_ += population_count(static_cast<std::uint32_t>(visible)) +
+                population_count(static_cast<std::uint32_t>(visible >> 32));
   }
 
   // Tests the samples of the partial cells, and hands on the fragments that have any.
   void finish() {
-    std::array<std::uint32_t, kFragments> masks;
-    work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial_, sampling_.pattern, masks.data());
+    work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial_, sampling_.pattern, masks_.data());
     work_.partial_cells += partial_;
-    for (std::size_t i = 0; i < partial_; ++i) fragments_[fragment_[i]].mask = masks[i];
-    std::size_t left = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const bool has_samples = fragments_[i].mask != 0;  // asked before the copy, which would have to be waited for
-      fragments_[left] = fragments_[i];
-      left += has_samples;
+    const std::size_t before = out_.size();
+    out_.resize(before + visible_ + 1);
+    SampleFragment* fragment = out_.data() + before;
+    const std::uint32_t* mask = masks_.data();
+    for (std::size_t i = 0; i < rows_in_block_; ++i) {
+      const Row& row = rows_[i];
+      for (std::uint64_t bits = row.visible; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits);
+        const bool full = (row.full >> bit & 1) != 0;
+        const std::uint32_t samples = full ? every_sample_ : *mask;
+        *fragment = {row.triangle, row.quad + static_cast<std::uint32_t>(bit >> 2), row.x + column_of(bit),
+                     row.y + row_of(bit), samples};
+        mask += !full;
+        fragment += samples != 0;
+      }
     }
-    out_.insert(out_.end(), fragments_.begin(), fragments_.begin() + static_cast<std::ptrdiff_t>(left));
+    out_.resize(static_cast<std::size_t>(fragment - out_.data()));
     if (triangles_ > 0) edges_[0] = edges_[triangles_ - 1];  // its cells may go on
-    count_ = partial_ = 0;
+    rows_in_block_ = partial_ = visible_ = 0;
     triangles_ = std::min<std::size_t>(triangles_, 1);
   }
 
  private:
-  static constexpr std::size_t kTriangles = 64, kFragments = 256;
+  static constexpr std::size_t kTriangles = 64, kRows = 64, kCells = 256;
+
+  // A row of quads.
+  struct Row {
+    std::uint32_t triangle, quad;
+    std::int32_t x, y;
+    std::uint64_t visible, full;
+  };
 
   const Sampling& sampling_;
   std::uint32_t every_sample_;
@@ -96,11 +107,11 @@ class FragmentBlock {
   std::uint32_t triangle_ = 0, quad_ = 0;
   DepthBounds<float> depths_{};
   bool is_opaque_ = false;
-  std::size_t triangles_ = 0, count_ = 0, partial_ = 0;
+  std::size_t triangles_ = 0, rows_in_block_ = 0, partial_ = 0, visible_ = 0;
   std::array<GridEdges, kTriangles> edges_;
-  std::array<SampleFragment, kFragments> fragments_;
-  std::array<GridCell, kFragments> cells_;          // those that are partial
-  std::array<std::uint32_t, kFragments> fragment_;  // of each of them: its number in the block
+  std::array<Row, kRows> rows_;
+  std::array<GridCell, kCells> cells_;  // those that are partial
+  std::array<std::uint32_t, kCells + 1> masks_;
 };
 
 DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
@@ -114,7 +125,7 @@ void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCo
   const std::size_t before = out.size();
   Traversal traversal{in.tile, in.sampling.grid, FullMeans::samples};
   SampleRasterWork work;
-  FragmentBlock block(in, closed, out, work);
+  CellBlock block(in, closed, out, work);
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = in.triangles.triangles[index];
     const DepthBounds<float> depths = sample_bounds(triangle);
