@@ -30,36 +30,43 @@ HWY_INLINE std::uint64_t quads_of_row(std::uint64_t cells) {
 
 HWY_INLINE std::uint32_t count_of(std::uint64_t mask) { return static_cast<std::uint32_t>(std::popcount(mask)); }
 
-ClosedCells close_cells_kernel(const ClosingRow& row, float* upper, float* lower) {
+ClosedCells close_cells_kernel(const ClosingTriangle& triangle, const ClosedTile& tile, ClosingRow* rows,
+                               std::size_t count) {
   using Tag = hn::CappedTag<float, 8>;
   using Depths = Lanes<Tag>;
   const Tag d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  const Depths nearest(row.nearest), farthest(row.farthest), farthest_of_closed(row.farthest_of_closed);
-  const auto first = static_cast<std::size_t>(std::countr_zero(row.touched)) / 4 * 2;
-  const auto end = static_cast<std::size_t>(std::bit_width(row.touched) + 3) / 4 * 2;
-  float* const rows[2] = {upper, lower};
+  const Depths nearest(triangle.nearest), farthest(triangle.farthest), farthest_of_tile(tile.farthest);
+  const std::ptrdiff_t width = tile.x1 - tile.x0;
   ClosedCells result{};
-  for (int side = 0; side < 2; ++side) {
-    std::uint64_t hidden = 0;
+  for (ClosingRow* row = rows; row != rows + count; ++row) {
+    const std::uint64_t touched = row->visible;
+    const auto first = static_cast<std::size_t>(std::countr_zero(touched)) / 4 * 2;
+    const auto end = static_cast<std::size_t>(std::bit_width(touched) + 3) / 4 * 2;
+    float* const upper = tile.depths + (row->y - tile.y0) * width + (row->x - tile.x0);
+    float* const sides[2] = {upper, row->y + 1 < tile.y1 ? upper + width : upper};
+    std::uint64_t behind[2] = {0, 0};
     for (std::size_t i = first; i < end; i += kLanes)
-      hidden |= std::uint64_t{mask_bits(nearest > Depths(hn::LoadU(d, rows[side] + i)))} << i;
-    result.hidden |= quads_of_row(hidden & 0xffffffff) << 2 * side;
-  }
-  result.hidden &= row.touched;
-  const std::uint64_t closed = row.covered & ~result.hidden;
-  for (int side = 0; closed != 0 && side < 2; ++side) {
-    const std::uint32_t cells = cells_of_row(closed >> 2 * side);
-    for (std::size_t i = first; i < end; i += kLanes) {
-      const Depths depth(hn::LoadU(d, rows[side] + i));
-      const auto changes = (farthest < depth) & mask_of_bits<Tag>(cells, i);
-      hn::StoreU(select(changes, farthest, depth).raw, d, rows[side] + i);
-      result.changed += count_of(mask_bits(changes));
-      result.changed_from_farthest += count_of(mask_bits(changes & (depth == farthest_of_closed)));
+      for (int side = 0; side < 2; ++side)
+        behind[side] |= std::uint64_t{mask_bits(nearest > Depths(hn::LoadU(d, sides[side] + i)))} << i;
+    std::uint64_t hidden = 0;
+    if ((behind[0] | behind[1]) != 0)
+      hidden = quads_of_row(behind[0] & 0xffffffff) | quads_of_row(behind[1] & 0xffffffff) << 2;
+    row->visible = touched & ~hidden;
+    const std::uint64_t closed = triangle.closes ? row->full & row->visible : 0;
+    for (int side = 0; closed != 0 && side < 2; ++side) {
+      const std::uint32_t cells = cells_of_row(closed >> 2 * side);
+      for (std::size_t i = first; i < end; i += kLanes) {
+        const Depths depth(hn::LoadU(d, sides[side] + i));
+        const auto changes = (farthest < depth) & mask_of_bits<Tag>(cells, i);
+        hn::StoreU(select(changes, farthest, depth).raw, d, sides[side] + i);
+        result.changed += count_of(mask_bits(changes));
+        result.changed_from_farthest += count_of(mask_bits(changes & (depth == farthest_of_tile)));
+      }
     }
+    result.tested += count_of(touched), result.hidden += count_of(touched & hidden);
+    result.closed += count_of(closed);
   }
-  result.tested = count_of(row.touched), result.hidden_count = count_of(result.hidden);
-  result.closed = count_of(closed);
   return result;
 }
 
@@ -70,8 +77,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace beampipe {
 HWY_EXPORT(close_cells_kernel);
-ClosedCells close_cells(const ClosingRow& row, float* upper, float* lower) {
-  return HWY_DYNAMIC_DISPATCH(close_cells_kernel)(row, upper, lower);
+ClosedCells close_cells(const ClosingTriangle& triangle, const ClosedTile& tile, ClosingRow* rows, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(close_cells_kernel)(triangle, tile, rows, count);
 }
 }  // namespace beampipe
 #endif

@@ -1,5 +1,5 @@
-// The depths at which cells are closed (stages/data/closed_depth.h), of a row of 2 x 2 quads at once: where do they
-// hide a triangle, and which of them does the triangle change?
+// The depths at which cells are closed (stages/data/closed_depth.h), of rows of 2 x 2 quads at once: where do they hide
+// a triangle, and which of them does the triangle change?
 #pragma once
 
 #include <cstddef>
@@ -7,26 +7,36 @@
 
 namespace beampipe {
 
-// A triangle in a row of quads. Masks are as in QuadRow.
+// A row of quads, of which the first one begins at cell (x, y). Masks are as in QuadRow.
 struct ClosingRow {
-  std::uint64_t touched;     // its cells
-  std::uint64_t covered;     // of these, those that it closes unless it is hidden there
-  float nearest, farthest;   // its depth
-  float farthest_of_closed;  // of all cells, not only these
+  std::int32_t x, y;
+  std::uint64_t visible;  // cells that the triangle touches; later those of them where it is not hidden
+  std::uint64_t full;     // cells that it covers
 };
 
-struct ClosedCells {
-  std::uint64_t hidden;                        // the cells with a depth < nearest
-  std::uint32_t tested, hidden_count, closed;  // how many cells
-  std::uint32_t changed;                       // of the closed ones, those that had a depth > farthest
-  std::uint32_t changed_from_farthest;         // of these, those that had farthest_of_closed
+struct ClosingTriangle {
+  float nearest, farthest;
+  bool closes;  // the cells that it covers and where it is not hidden
 };
 
-// So many depths beyond the last quad that is touched must be readable and writable.
+// A tile's cells.
+struct ClosedTile {
+  std::int32_t x0, y0, x1, y1;
+  float* depths;   // row by row; kClosedSlack more must be readable and writable
+  float farthest;  // of them
+};
 inline constexpr std::size_t kClosedSlack = 8;
 
-// `upper`, `lower`: the depths of the two rows of cells, from the first quad on. They may be the same where the
-// triangle touches no cell of the lower row. Closes what the triangle covers.
-ClosedCells close_cells(const ClosingRow& row, float* upper, float* lower);
+// How many cells.
+struct ClosedCells {
+  std::uint32_t tested;
+  std::uint32_t hidden;  // they have a depth < nearest
+  std::uint32_t closed;
+  std::uint32_t changed;                // of the closed ones, those that had a depth > farthest
+  std::uint32_t changed_from_farthest;  // of these, those that had the tile's farthest depth
+};
+
+// Leaves of each row the visible cells.
+ClosedCells close_cells(const ClosingTriangle& triangle, const ClosedTile& tile, ClosingRow* rows, std::size_t count);
 
 }  // namespace beampipe

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "simd/closed_cells.h"
-#include "simd/quad_rows.h"
 #include "stages/data/tile.h"
 
 namespace beampipe {
@@ -71,18 +70,15 @@ class ClosedDepth {
     depth = changes ? farthest : depth;
     return hidden;
   }
-  // The same for a row of quads, of which the first one begins at (x, y). Closes what the triangle covers if it
-  // `is_opaque`, and counts. Returns the cells that are hidden.
-  std::uint64_t hides_or_closes(std::int32_t x, std::int32_t y, const QuadRow& cells, float nearest, float farthest,
-                                bool is_opaque) {
-    float* const upper = &depth_[tile_.index(x, y)];
-    float* const lower = y + 1 < tile_.y1 ? upper + tile_.width() : upper;
+  // The same for rows of quads of one triangle, of which it leaves the cells that are not hidden. Counts, and returns
+  // how many cells these are.
+  std::size_t hides_or_closes(const ClosingTriangle& triangle, ClosingRow* rows, std::size_t count) {
     const ClosedCells found =
-        close_cells({cells.touched, is_opaque ? cells.full : 0, nearest, farthest, farthest_}, upper, lower);
+        close_cells(triangle, {tile_.x0, tile_.y0, tile_.x1, tile_.y1, depth_.data(), farthest_}, rows, count);
     work_.changes += found.changed;
     changes_ += found.changed_from_farthest;
-    count(found.tested, found.hidden_count, found.closed);
-    return found.hidden;
+    this->count(found.tested, found.hidden, found.closed);
+    return found.tested - found.hidden;
   }
   void count(std::uint64_t tests, std::uint64_t hidden, std::uint64_t closings) {
     work_.pixel_tests += tests, work_.hidden += hidden, work_.closings += closings;

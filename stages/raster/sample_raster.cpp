@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "simd/population_count.h"
+#include "simd/prefetch.h"
 #include "simd/sample_mask.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/sample_raster_cost.h"
@@ -36,67 +36,84 @@ class CellBlock {
         out_(out),
         work_(work) {}
 
-  // The cells that are added next belong to this triangle.
+  // The rows that are added next belong to this triangle.
   void start(std::uint32_t triangle, const EdgeSet& set, const DepthBounds<float>& depths, bool is_opaque) {
     if (triangles_ == kTriangles) finish();
     edges_[triangles_++] = grid_edges(set, sampling_.grid);
-    triangle_ = triangle, depths_ = depths, is_opaque_ = is_opaque;
+    triangle_ = triangle, closing_ = {depths.nearest, depths.farthest, is_opaque};
   }
 
   // As traverse_quads() visits them.
   void add(std::int32_t x, std::int32_t y, const QuadRow& cells) {
-    const std::uint32_t quad = quad_;
+    if (count_ == kRows) finish();
+    rows_[count_] = {x, y, cells.touched, cells.full};
+    origins_[count_] = {triangle_, static_cast<std::uint32_t>(triangles_ - 1), quad_};
+    count_ += cells.touched != 0;
     quad_ += kQuadsPerRow;
-    if (cells.touched == 0) return;
-    std::uint64_t visible = cells.touched;
-    if (closed_) visible &= ~closed_->hides_or_closes(x, y, cells, depths_.nearest, depths_.farthest, is_opaque_);
-    if (visible == 0) return;
-    if (rows_in_block_ == kRows || partial_ + 4 * kQuadsPerRow > kCells) finish();
-    rows_[rows_in_block_++] = {triangle_, quad, x, y, visible, cells.full};
-    const auto edges = static_cast<std::uint32_t>(triangles_ - 1);
-    for (std::uint64_t bits = visible & ~cells.full; bits != 0; bits &= bits - 1) {
-      const int bit = std::countr_zero(bits);
-      cells_[partial_++] = {edges, x + column_of(bit), y + row_of(bit)};
+  }
+
+  // Leaves out the cells where the triangle that was started last is hidden.
+  void hide() {
+    ClosingRow* const rows = &rows_[tested_];
+    const std::size_t count = count_ - tested_;
+    tested_ = count_;
+    if (closed_) {
+      visible_ += closed_->hides_or_closes(closing_, rows, count);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) visible_ += static_cast<std::size_t>(std::popcount(rows[i].visible));
     }
-    visible_ += population_count(static_cast<std::uint32_t>(visible)) +
-                population_count(static_cast<std::uint32_t>(visible >> 32));
   }
 
   // Tests the samples of the partial cells, and hands on the fragments that have any.
   void finish() {
-    work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial_, sampling_.pattern, masks_.data());
-    work_.partial_cells += partial_;
+    hide();
     const std::size_t before = out_.size();
     out_.resize(before + visible_ + 1);
-    SampleFragment* fragment = out_.data() + before;
-    const std::uint32_t* mask = masks_.data();
-    for (std::size_t i = 0; i < rows_in_block_; ++i) {
-      const Row& row = rows_[i];
-      for (std::uint64_t bits = row.visible; bits != 0; bits &= bits - 1) {
-        const int bit = std::countr_zero(bits);
-        const bool full = (row.full >> bit & 1) != 0;
-        const std::uint32_t samples = full ? every_sample_ : *mask;
-        *fragment = {row.triangle, row.quad + static_cast<std::uint32_t>(bit >> 2), row.x + column_of(bit),
-                     row.y + row_of(bit), samples};
-        mask += !full;
-        fragment += samples != 0;
+    SampleFragment* to = out_.data() + before;
+    for (std::size_t first = 0, end = 0; first < count_; first = end) {
+      std::size_t partial = 0;
+      for (; end < count_ && partial + 4 * kQuadsPerRow <= kCells; ++end) {
+        const ClosingRow& row = rows_[end];
+        for (std::uint64_t bits = row.visible & ~row.full; bits != 0; bits &= bits - 1) {
+          const int bit = std::countr_zero(bits);
+          cells_[partial++] = {origins_[end].edges, row.x + column_of(bit), row.y + row_of(bit)};
+        }
       }
+      work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial, sampling_.pattern, masks_.data());
+      work_.partial_cells += partial;
+      to = put_fragments(first, end, to);
     }
-    out_.resize(static_cast<std::size_t>(fragment - out_.data()));
+    out_.resize(static_cast<std::size_t>(to - out_.data()));
     if (triangles_ > 0) edges_[0] = edges_[triangles_ - 1];  // its cells may go on
-    rows_in_block_ = partial_ = visible_ = 0;
+    count_ = tested_ = visible_ = 0;
     triangles_ = std::min<std::size_t>(triangles_, 1);
   }
 
  private:
   static constexpr std::size_t kTriangles = 64, kRows = 64, kCells = 256;
 
-  // A row of quads.
-  struct Row {
-    std::uint32_t triangle, quad;
-    std::int32_t x, y;
-    std::uint64_t visible, full;
+  struct Origin {
+    std::uint32_t triangle, edges, quad;
   };
+
+  // Of rows [first, end), whose partial cells have the masks. Returns where the next ones go.
+  SampleFragment* put_fragments(std::size_t first, std::size_t end, SampleFragment* to) const {
+    const std::uint32_t* mask = masks_.data();
+    for (std::size_t i = first; i < end; ++i) {
+      const ClosingRow& row = rows_[i];
+      const Origin& origin = origins_[i];
+      for (std::uint64_t bits = row.visible; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits);
+        const bool full = (row.full >> bit & 1) != 0;
+        const std::uint32_t tested = *mask, samples = full ? every_sample_ : tested;  // nothing to predict
+        *to = {origin.triangle, origin.quad + static_cast<std::uint32_t>(bit >> 2), row.x + column_of(bit),
+               row.y + row_of(bit), samples};
+        mask += !full;
+        to += samples != 0;
+      }
+    }
+    return to;
+  }
 
   const Sampling& sampling_;
   std::uint32_t every_sample_;
@@ -105,11 +122,11 @@ class CellBlock {
   SampleRasterWork& work_;
 
   std::uint32_t triangle_ = 0, quad_ = 0;
-  DepthBounds<float> depths_{};
-  bool is_opaque_ = false;
-  std::size_t triangles_ = 0, rows_in_block_ = 0, partial_ = 0, visible_ = 0;
+  ClosingTriangle closing_{};
+  std::size_t triangles_ = 0, count_ = 0, tested_ = 0, visible_ = 0;  // tested_: rows; visible_: cells of these
   std::array<GridEdges, kTriangles> edges_;
-  std::array<Row, kRows> rows_;
+  std::array<ClosingRow, kRows + 1> rows_;
+  std::array<Origin, kRows + 1> origins_;
   std::array<GridCell, kCells> cells_;  // those that are partial
   std::array<std::uint32_t, kCells + 1> masks_;
 };
@@ -126,7 +143,10 @@ void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCo
   Traversal traversal{in.tile, in.sampling.grid, FullMeans::samples};
   SampleRasterWork work;
   CellBlock block(in, closed, out, work);
-  for (const std::uint32_t index : list) {
+  constexpr std::size_t kAhead = 6;  // triangles
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (i + kAhead < list.size()) prefetch(in.triangles.triangles[list[i + kAhead]]);
+    const std::uint32_t index = list[i];
     const SetupTriangle& triangle = in.triangles.triangles[index];
     const DepthBounds<float> depths = sample_bounds(triangle);
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
@@ -134,6 +154,7 @@ void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCo
     block.start(index, set, depths, in.triangles.is_opaque(index));
     traverse_quads(triangle, set, traversal,
                    [&](std::int32_t x, std::int32_t y, const QuadRow& cells) { block.add(x, y, cells); });
+    block.hide();
     if (closed) closed->refresh();
   }
   block.finish();

@@ -6,61 +6,64 @@
 
 namespace beampipe::closed_cells_test {
 
-constexpr int kColumns = 2 * kQuadsPerRow;
-
-std::vector<float> depths_of_row(Random& random) {
-  std::vector<float> depths(kColumns + kClosedSlack);
+// The depths of a tile that has `width` x `height` cells, and what may be read beyond it.
+std::vector<float> random_depths(Random& random, std::int32_t width, std::int32_t height) {
+  std::vector<float> depths(static_cast<std::size_t>(width * height) + kClosedSlack);
   for (float& depth : depths) depth = random.pick(std::vector{-0.75f, -0.5f, -0.25f, 1.0f});
   return depths;
 }
 
+// Two rows of a triangle, in tiles of all widths up to that of a row. The last row of quads may have no lower cells.
 TEST(ClosedCells, KernelEqualsOneCellAfterTheOther) {
   Random random(7);
   on_every_target([&] {
     for (int i = 0; i < 3'000; ++i) {
-      const std::int64_t first = random.integer(0, 63), last = random.integer(first, 63);
-      const std::uint64_t range = ~std::uint64_t{0} << first & ~std::uint64_t{0} >> (63 - last);
-      const std::uint64_t touched = (random.bits() & range) | std::uint64_t{1} << first;
-      const ClosingRow row{touched, touched & random.bits(), random.pick(std::vector{-1.0f, -0.5f, -0.375f}),
-                           random.pick(std::vector{-0.375f, -0.25f, 0.0f}), random.pick(std::vector{-0.25f, 1.0f})};
-      const std::vector<float> before[2] = {depths_of_row(random), depths_of_row(random)};
-      std::vector<float> after[2] = {before[0], before[1]};
-      const ClosedCells found = close_cells(row, after[0].data(), after[1].data());
+      SCOPED_TRACE(i);
+      const std::int32_t width = random.int32(1, 2 * kQuadsPerRow), height = random.int32(3, 4);
+      const std::vector<float> before = random_depths(random, width, height);
+      std::vector<float> after = before;
+      const float farthest_of_tile = random.pick(std::vector{-0.25f, 1.0f});
+      const ClosingTriangle triangle{random.pick(std::vector{-1.0f, -0.5f, -0.375f}),
+                                     random.pick(std::vector{-0.375f, -0.25f, 0.0f}), !random.one_in(4)};
+      const std::int32_t left = random.int32(0, (width - 1) / 2) * 2;
+      ClosingRow rows[2];
+      for (std::int32_t row = 0; row < 2; ++row) {
+        std::uint64_t inside = 0;
+        for (int bit = 0; bit < 64; ++bit)
+          if (left + bit / 4 * 2 + bit % 2 < width && 2 * row + bit / 2 % 2 < height) inside |= std::uint64_t{1} << bit;
+        const std::uint64_t touched = (random.bits() & inside) | 1;
+        rows[row] = {10 + left, 20 + 2 * row, touched, touched & random.bits()};
+      }
+      const ClosingRow given[2] = {rows[0], rows[1]};
+      const ClosedCells found =
+          close_cells(triangle, {10, 20, 10 + width, 20 + height, after.data(), farthest_of_tile}, rows, 2);
 
-      std::uint32_t tested = 0, hidden = 0, closed = 0, changed = 0, from_farthest = 0;
-      for (int x = 0; x < kColumns; ++x) {
-        for (int y = 0; y < 2; ++y) {
-          const int bit = 4 * (x / 2) + 2 * y + x % 2;
-          const float depth = before[y][static_cast<std::size_t>(x)];
-          const bool is_touched = row.touched >> bit & 1, is_hidden = is_touched && depth < row.nearest;
-          const bool closes = row.covered >> bit & 1 && !is_hidden, changes = closes && row.farthest < depth;
-          tested += is_touched, hidden += is_hidden, closed += closes, changed += changes;
-          from_farthest += changes && depth == row.farthest_of_closed;
-          ASSERT_EQ(found.hidden >> bit & 1, is_hidden) << "row " << i << ", cell " << x << "," << y;
-          ASSERT_EQ(after[y][static_cast<std::size_t>(x)], changes ? row.farthest : depth)
-              << "row " << i << ", cell " << x << "," << y;
+      ClosedCells expected{};
+      std::vector<float> closed = before;
+      for (std::int32_t row = 0; row < 2; ++row) {
+        for (int bit = 0; bit < 64; ++bit) {
+          if (!(given[row].visible >> bit & 1)) {
+            ASSERT_EQ(rows[row].visible >> bit & 1, 0u);
+            continue;
+          }
+          const std::int32_t x = left + bit / 4 * 2 + bit % 2, y = 2 * row + bit / 2 % 2;
+          float& depth = closed[static_cast<std::size_t>(y * width + x)];
+          const bool hidden = depth < triangle.nearest;
+          const bool closes = triangle.closes && !hidden && (given[row].full >> bit & 1);
+          const bool changes = closes && triangle.farthest < depth;
+          ASSERT_EQ(rows[row].visible >> bit & 1, !hidden) << x << "," << y;
+          ++expected.tested, expected.hidden += hidden, expected.closed += closes, expected.changed += changes;
+          expected.changed_from_farthest += changes && depth == farthest_of_tile;
+          if (changes) depth = triangle.farthest;
         }
       }
-      for (int y = 0; y < 2; ++y)
-        for (std::size_t x = kColumns; x < before[y].size(); ++x)
-          ASSERT_EQ(after[y][x], before[y][x]) << "beyond the row";
-      ASSERT_EQ(found.tested, tested);
-      ASSERT_EQ(found.hidden_count, hidden);
-      ASSERT_EQ(found.closed, closed);
-      ASSERT_EQ(found.changed, changed);
-      ASSERT_EQ(found.changed_from_farthest, from_farthest);
+      ASSERT_EQ(after, closed);
+      ASSERT_EQ(found.tested, expected.tested);
+      ASSERT_EQ(found.hidden, expected.hidden);
+      ASSERT_EQ(found.closed, expected.closed);
+      ASSERT_EQ(found.changed, expected.changed);
+      ASSERT_EQ(found.changed_from_farthest, expected.changed_from_farthest);
     }
-  });
-}
-
-// Rows of a narrow tile follow each other in memory closer than the kernel reaches.
-TEST(ClosedCells, RowsMayFollowEachOther) {
-  on_every_target([] {
-    std::vector<float> depths(4 + kClosedSlack, -0.5f);
-    const ClosedCells found = close_cells({0b1111, 0b1111, -0.75f, -0.625f, -0.5f}, &depths[0], &depths[2]);
-    EXPECT_EQ(found.changed_from_farthest, 4u);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(depths[i], -0.625f) << i;
-    for (std::size_t i = 4; i < depths.size(); ++i) EXPECT_EQ(depths[i], -0.5f) << i;
   });
 }
 
