@@ -106,7 +106,7 @@ mutants=(  # file | text as it is | broken
   'stages/picture/resolve.cpp|was_flat && !runs.ends_at(pixel * samples - 1)|was_flat'
   'stages/picture/resolve.cpp|(s / kRunWord + 1) * kRunWord|s + kRunWord'
   'simd/run_ends.cpp|first + i + 1)|first + i)'
-  'simd/tested_cells.cpp|hn::Add(hn::Mul(pixel_y, width), pixel_x)|hn::Mul(pixel_y, width)'
+  'simd/tested_cells.cpp|hn::Mul(pixel_y, width), pixel_x|hn::Mul(pixel_x, width), pixel_y'
   'simd/tested_cells.cpp|hn::ShiftLeftSame((y & last_row).raw, columns)|(y & last_row).raw'
   'simd/tested_cells.cpp|Doubles(y) * cell_height|Doubles(y) * cell_width'
   'stages/surface/mip_chain.cpp|std::max(begin, double(i))|begin'
