@@ -116,13 +116,13 @@ void DepthTestUnit::count_bytes() {
 
 void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
                     std::vector<float>& counts) {
+  if (grid.cells_per_pixel() == 1) {  // a cell is a pixel, and a triangle has one fragment in it at most
+    for (const SampleFragment& fragment : fragments) ++counts[tile.index(fragment.x, fragment.y)];
+    return;
+  }
   const auto pixel_of = [grid, tile](const SampleFragment& fragment) {
     return tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
   };
-  if (grid.cells_per_pixel() == 1) {  // a triangle has one fragment in it at most
-    for (const SampleFragment& fragment : fragments) ++counts[pixel_of(fragment)];
-    return;
-  }
   const bool quads_share_pixels = grid.columns > 1 && grid.rows > 1;
   std::vector<std::uint32_t> last(counts.size(), ~0u);  // the triangle that was counted last
   for (std::size_t i = 0; i < fragments.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "simd/closed_cells.h"
 #include "stages/data/tile.h"
 
 namespace beampipe {
@@ -21,7 +22,7 @@ struct ClosedDepthWork {
 
 class ClosedDepth {
  public:
-  explicit ClosedDepth(const Tile& tile) : tile_(tile), depth_(tile.pixels(), kBeyond) {}
+  explicit ClosedDepth(const Tile& tile) : tile_(tile), depth_(tile.pixels() + kClosedSlack, kBeyond) {}
 
   // Is something with this nearest depth hidden in the pixel? (x, y): frame coordinates, inside the tile.
   bool hides(std::int32_t x, std::int32_t y, float nearest) {
@@ -69,20 +70,31 @@ class ClosedDepth {
     depth = changes ? farthest : depth;
     return hidden;
   }
+  // The same for rows of quads of one triangle, of which it leaves the cells that are not hidden. Counts, and returns
+  // how many cells these are.
+  std::size_t hides_or_closes(const ClosingTriangle& triangle, ClosingRow* rows, std::size_t count) {
+    const ClosedCells found =
+        close_cells(triangle, {tile_.x0, tile_.y0, tile_.x1, tile_.y1, depth_.data(), farthest_}, rows, count);
+    work_.changes += found.changed;
+    changes_ += found.changed_from_farthest;
+    this->count(found.tested, found.hidden, found.closed);
+    return found.tested - found.hidden;
+  }
   void count(std::uint64_t tests, std::uint64_t hidden, std::uint64_t closings) {
     work_.pixel_tests += tests, work_.hidden += hidden, work_.closings += closings;
   }
 
   // Brings hides_everywhere up to date once every pixel has become nearer than the tile's depth.
   void refresh() {
-    if (changes_ < depth_.size()) return;
-    work_.refreshed_pixels += depth_.size();
-    farthest_ = *std::max_element(depth_.begin(), depth_.end());
-    changes_ = static_cast<std::size_t>(
-        std::count_if(depth_.begin(), depth_.end(), [this](float depth) { return depth < farthest_; }));
+    if (changes_ < tile_.pixels()) return;
+    work_.refreshed_pixels += tile_.pixels();
+    const auto end = depth_.end() - kClosedSlack;
+    farthest_ = *std::max_element(depth_.begin(), end);
+    changes_ =
+        static_cast<std::size_t>(std::count_if(depth_.begin(), end, [this](float depth) { return depth < farthest_; }));
   }
 
-  std::size_t bytes() const { return depth_.size() * sizeof(float) + sizeof farthest_; }
+  std::size_t bytes() const { return tile_.pixels() * sizeof(float) + sizeof farthest_; }
 
   // Returns the work since the last call.
   ClosedDepthWork take_work() { return std::exchange(work_, {}); }

@@ -1,5 +1,9 @@
 #include "stages/picture/resolve.h"
 
+#include <algorithm>
+#include <bit>
+
+#include "simd/run_ends.h"
 #include "stages/cost/charge_resolve.h"
 #include "stages/picture/picture_formulas.h"
 #include "stages/picture/resolve_cost.h"
@@ -37,31 +41,48 @@ struct SampleRun {
   bool varies;             // its colour depends on the cell that it lies in
 };
 
+// Runs of samples with the same triangle, in the order of the surface.
+class OwnerRuns {
+ public:
+  explicit OwnerRuns(const SampleTile& surface, std::size_t samples) : words_((samples + kRunWord - 1) / kRunWord) {
+    mark_run_ends(surface.triangle.data(), samples, words_.data());
+  }
+
+  // Does the run of sample s end there?
+  bool ends_at(std::size_t s) const { return (words_[s / kRunWord] >> s % kRunWord & 1) != 0; }
+
+  // The end of the run of sample s, or `last` if that comes first.
+  std::size_t end_from(std::size_t s, std::size_t last) const {
+    for (; s < last; s = (s / kRunWord + 1) * kRunWord)
+      if (const std::uint64_t rest = words_[s / kRunWord] >> s % kRunWord)
+        return std::min(last, s + static_cast<std::size_t>(std::countr_zero(rest)) + 1);
+    return last;
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
 // Do all samples of the pixel show the same, which is flat?
-bool is_flat(const SampleTile& surface, std::size_t pixel, const TileShader& shader) {
-  const std::uint32_t* const owner = surface.triangle.data() + pixel * surface.samples_per_pixel;
-  return surface.over.empty() && all_show(owner, surface.samples_per_pixel, *owner) &&
-         (*owner == kNoTriangle || shader.is_flat(*owner));
+bool is_flat(const SampleTile& surface, const OwnerRuns& runs, std::size_t pixel, const TileShader& shader) {
+  const std::size_t begin = pixel * surface.samples_per_pixel, end = begin + surface.samples_per_pixel;
+  const std::uint32_t owner = surface.triangle[begin];
+  return surface.over.empty() && runs.end_from(begin, end) == end && (owner == kNoTriangle || shader.is_flat(owner));
 }
 
-// Calls visit(run) for the runs of a pixel, in order. `flat`: is_flat() of it.
+// Calls visit(run) for the runs of a pixel, in order.
 template <class Visit>
-void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samples_per_cell, const TileShader& shader,
-                  bool flat, Visit&& visit) {
-  const std::size_t samples = surface.samples_per_pixel;
-  const std::uint32_t* const owner = surface.triangle.data() + pixel * samples;
-  if (flat) return visit(SampleRun{0, samples, *owner, false});
-  constexpr std::size_t kBlock = 8;  // samples
-  const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
-  for (std::size_t s = 0; s < samples;) {
-    const std::uint32_t triangle = owner[s];
+void for_each_run(const SampleTile& surface, const OwnerRuns& runs, std::size_t pixel, std::size_t samples_per_cell,
+                  const TileShader& shader, Visit&& visit) {
+  const std::size_t samples = surface.samples_per_pixel, first = pixel * samples;
+  const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[first];
+  for (std::size_t s = 0, end = 0; s < samples; s = end) {
+    const std::uint32_t triangle = surface.triangle[first + s];
     const bool varies = triangle != kNoTriangle && !shader.is_flat(triangle);
-    const std::size_t most = varies ? s - s % samples_per_cell + samples_per_cell : samples;
-    std::size_t end = s + 1;
-    while (!over && end + kBlock <= most && all_show(owner + end, kBlock, triangle)) end += kBlock;
-    while (end < most && owner[end] == triangle && (!over || over[end] == over[s])) ++end;
+    end = runs.end_from(first + s, first + (varies ? s - s % samples_per_cell + samples_per_cell : samples)) - first;
+    for (std::size_t i = s + 1; over && i < end; ++i)
+      if (over[i] != over[s]) end = i;
     visit(SampleRun{s, end, triangle, varies});
-    s = end;
   }
 }
 
@@ -70,17 +91,17 @@ void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samp
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters, const ResolveOptions& options) {
   const std::size_t cells = options.cells, samples = surface.samples_per_pixel, samples_per_cell = samples / cells;
+  const OwnerRuns runs(surface, pixels * samples);
   std::vector<glm::vec3> varying;  // colours, one for each run that varies
   if (!shader.is_flat()) {
     std::vector<Invocation> invocations;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      for_each_run(
-          surface, pixel, samples_per_cell, shader, is_flat(surface, pixel, shader), [&](const SampleRun& run) {
-            if (!run.varies) return;
-            const CellPlace place = options.place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
-            invocations.push_back(
-                {run.triangle, shader.place(static_cast<std::uint32_t>(pixel), place.u, place.v), place.width});
-          });
+      for_each_run(surface, runs, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
+        if (!run.varies) return;
+        const CellPlace place = options.place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
+        invocations.push_back(
+            {run.triangle, shader.place(static_cast<std::uint32_t>(pixel), place.u, place.v), place.width});
+      });
     }
     varying = shader.colors(invocations);
   }
@@ -90,21 +111,19 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   std::vector<glm::vec4> image;
   image.reserve(pixels);
   bool was_flat = false;  // the pixel before
-  std::uint32_t last = kNoTriangle;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
     PixelObserver* const observer = observer_at(surface.observers, pixel);
-    const std::uint32_t triangle = surface.triangle[pixel * samples];
-    const bool flat = is_flat(surface, pixel, shader);
-    if (flat && was_flat && triangle == last && !observer) {
+    const bool flat = is_flat(surface, runs, pixel, shader);
+    if (flat && was_flat && !runs.ends_at(pixel * samples - 1) && !observer) {
       image.push_back(image.back());
       continue;
     }
-    was_flat = flat, last = triangle;
+    was_flat = flat;
     // Runs of equal samples are added at once. The sum is that of a box filter in double precision either way.
     glm::dvec3 sum(0.0);
     double covered = 0;
-    for_each_run(surface, pixel, samples_per_cell, shader, flat, [&](const SampleRun& run) {
+    for_each_run(surface, runs, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
       const auto count = static_cast<double>(run.end - run.begin);
       double weight = share;                                             // of a sample
       const double seen = over ? 1.0 - double{over[run.begin].a} : 1.0;  // of the opaque surface

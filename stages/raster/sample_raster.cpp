@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "simd/prefetch.h"
 #include "simd/sample_mask.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/sample_raster_cost.h"
@@ -24,68 +25,95 @@ GridEdges grid_edges(const EdgeSet& set, const CellGrid& grid) {
   return edges;
 }
 
-// The fragments of some triangles, before the samples of their partial cells are tested: in blocks, which stay in the
-// nearest cache.
-class FragmentBlock {
+// The cells of some triangles, before the samples of the partial ones are tested: in blocks, which stay in the nearest
+// cache.
+class CellBlock {
  public:
-  FragmentBlock(const SampledTriangles& in, ClosedDepth* closed, std::vector<SampleFragment>& out,
-                SampleRasterWork& work)
+  CellBlock(const SampledTriangles& in, ClosedDepth* closed, std::vector<SampleFragment>& out, SampleRasterWork& work)
       : sampling_(in.sampling),
         every_sample_(~0u >> (kMaxMaskSamples - in.sampling.pattern.count)),
         closed_(closed),
         out_(out),
         work_(work) {}
 
-  // The cells that are added next belong to this triangle.
+  // The rows that are added next belong to this triangle.
   void start(std::uint32_t triangle, const EdgeSet& set, const DepthBounds<float>& depths, bool is_opaque) {
     if (triangles_ == kTriangles) finish();
     edges_[triangles_++] = grid_edges(set, sampling_.grid);
-    triangle_ = triangle, depths_ = depths, is_opaque_ = is_opaque;
+    triangle_ = triangle, closing_ = {depths.nearest, depths.farthest, is_opaque};
   }
 
-  // As traverse_quads() visits them. Nothing branches on what is full or hidden, which no processor predicts.
-  void add(std::int32_t left, std::int32_t top, const QuadRow& cells) {
-    if (count_ + 4 * kQuadsPerRow > kFragments) finish();
-    const std::uint32_t edges = static_cast<std::uint32_t>(triangles_ - 1);
-    std::size_t count = count_, partial = partial_, tests = 0;
-    for (std::uint64_t bits = cells.touched; bits != 0; bits &= bits - 1, ++tests) {
-      const int bit = std::countr_zero(bits);
-      const std::int32_t x = left + column_of(bit), y = top + row_of(bit);
-      const bool full = (cells.full >> bit & 1) != 0;
-      const bool hidden =
-          closed_ && closed_->hides_or_closes(x, y, depths_.nearest, depths_.farthest, full & is_opaque_);
-      fragments_[count] = {triangle_, quad_ + static_cast<std::uint32_t>(bit >> 2), x, y, every_sample_};
-      cells_[partial] = {edges, x, y};
-      fragment_[partial] = static_cast<std::uint32_t>(count);
-      partial += !full & !hidden;
-      count += !hidden;
-    }
+  // As traverse_quads() visits them.
+  void add(std::int32_t x, std::int32_t y, const QuadRow& cells) {
+    if (count_ == kRows) finish();
+    rows_[count_] = {x, y, cells.touched, cells.full};
+    origins_[count_] = {triangle_, static_cast<std::uint32_t>(triangles_ - 1), quad_};
+    count_ += cells.touched != 0;
     quad_ += kQuadsPerRow;
-    const std::size_t visible = count - count_, full = visible - (partial - partial_);
-    count_ = count, partial_ = partial;
-    if (closed_) closed_->count(tests, tests - visible, is_opaque_ ? full : 0);
+  }
+
+  // Leaves out the cells where the triangle that was started last is hidden.
+  void hide() {
+    ClosingRow* const rows = &rows_[tested_];
+    const std::size_t count = count_ - tested_;
+    tested_ = count_;
+    if (closed_) {
+      visible_ += closed_->hides_or_closes(closing_, rows, count);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) visible_ += static_cast<std::size_t>(std::popcount(rows[i].visible));
+    }
   }
 
   // Tests the samples of the partial cells, and hands on the fragments that have any.
   void finish() {
-    std::array<std::uint32_t, kFragments> masks;
-    work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial_, sampling_.pattern, masks.data());
-    work_.partial_cells += partial_;
-    for (std::size_t i = 0; i < partial_; ++i) fragments_[fragment_[i]].mask = masks[i];
-    std::size_t left = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const bool has_samples = fragments_[i].mask != 0;  // asked before the copy, which would have to be waited for
-      fragments_[left] = fragments_[i];
-      left += has_samples;
+    hide();
+    const std::size_t before = out_.size();
+    out_.resize(before + visible_ + 1);
+    SampleFragment* to = out_.data() + before;
+    for (std::size_t first = 0, end = 0; first < count_; first = end) {
+      std::size_t partial = 0;
+      for (; end < count_ && partial + 4 * kQuadsPerRow <= kCells; ++end) {
+        const ClosingRow& row = rows_[end];
+        for (std::uint64_t bits = row.visible & ~row.full; bits != 0; bits &= bits - 1) {
+          const int bit = std::countr_zero(bits);
+          cells_[partial++] = {origins_[end].edges, row.x + column_of(bit), row.y + row_of(bit)};
+        }
+      }
+      work_.covered_samples += sample_masks(edges_.data(), cells_.data(), partial, sampling_.pattern, masks_.data());
+      work_.partial_cells += partial;
+      to = put_fragments(first, end, to);
     }
-    out_.insert(out_.end(), fragments_.begin(), fragments_.begin() + static_cast<std::ptrdiff_t>(left));
+    out_.resize(static_cast<std::size_t>(to - out_.data()));
     if (triangles_ > 0) edges_[0] = edges_[triangles_ - 1];  // its cells may go on
-    count_ = partial_ = 0;
+    count_ = tested_ = visible_ = 0;
     triangles_ = std::min<std::size_t>(triangles_, 1);
   }
 
  private:
-  static constexpr std::size_t kTriangles = 64, kFragments = 256;
+  static constexpr std::size_t kTriangles = 64, kRows = 64, kCells = 256;
+
+  struct Origin {
+    std::uint32_t triangle, edges, quad;
+  };
+
+  // Of rows [first, end), whose partial cells have the masks. Returns where the next ones go.
+  SampleFragment* put_fragments(std::size_t first, std::size_t end, SampleFragment* to) const {
+    const std::uint32_t* mask = masks_.data();
+    for (std::size_t i = first; i < end; ++i) {
+      const ClosingRow& row = rows_[i];
+      const Origin& origin = origins_[i];
+      for (std::uint64_t bits = row.visible; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits);
+        const bool full = (row.full >> bit & 1) != 0;
+        const std::uint32_t tested = *mask, samples = full ? every_sample_ : tested;  // nothing to predict
+        *to = {origin.triangle, origin.quad + static_cast<std::uint32_t>(bit >> 2), row.x + column_of(bit),
+               row.y + row_of(bit), samples};
+        mask += !full;
+        to += samples != 0;
+      }
+    }
+    return to;
+  }
 
   const Sampling& sampling_;
   std::uint32_t every_sample_;
@@ -94,13 +122,13 @@ class FragmentBlock {
   SampleRasterWork& work_;
 
   std::uint32_t triangle_ = 0, quad_ = 0;
-  DepthBounds<float> depths_{};
-  bool is_opaque_ = false;
-  std::size_t triangles_ = 0, count_ = 0, partial_ = 0;
+  ClosingTriangle closing_{};
+  std::size_t triangles_ = 0, count_ = 0, tested_ = 0, visible_ = 0;  // tested_: rows; visible_: cells of these
   std::array<GridEdges, kTriangles> edges_;
-  std::array<SampleFragment, kFragments> fragments_;
-  std::array<GridCell, kFragments> cells_;          // those that are partial
-  std::array<std::uint32_t, kFragments> fragment_;  // of each of them: its number in the block
+  std::array<ClosingRow, kRows + 1> rows_;
+  std::array<Origin, kRows + 1> origins_;
+  std::array<GridCell, kCells> cells_;  // those that are partial
+  std::array<std::uint32_t, kCells + 1> masks_;
 };
 
 DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
@@ -114,8 +142,11 @@ void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCo
   const std::size_t before = out.size();
   Traversal traversal{in.tile, in.sampling.grid, FullMeans::samples};
   SampleRasterWork work;
-  FragmentBlock block(in, closed, out, work);
-  for (const std::uint32_t index : list) {
+  CellBlock block(in, closed, out, work);
+  constexpr std::size_t kAhead = 6;  // triangles
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (i + kAhead < list.size()) prefetch(in.triangles.triangles[list[i + kAhead]]);
+    const std::uint32_t index = list[i];
     const SetupTriangle& triangle = in.triangles.triangles[index];
     const DepthBounds<float> depths = sample_bounds(triangle);
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
@@ -123,6 +154,7 @@ void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCo
     block.start(index, set, depths, in.triangles.is_opaque(index));
     traverse_quads(triangle, set, traversal,
                    [&](std::int32_t x, std::int32_t y, const QuadRow& cells) { block.add(x, y, cells); });
+    block.hide();
     if (closed) closed->refresh();
   }
   block.finish();

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "simd/depth_compare.h"
-#include "stages/data/pixel_depth.h"
+#include "simd/tested_cells.h"
 #include "stages/samples/test_depth_cost.h"
 
 namespace beampipe {
@@ -12,22 +13,29 @@ namespace {
 
 constexpr std::size_t kBlock = 256;  // fragments; what the kernels read of them stays in the nearest cache
 
-// The input of a kernel. A triangle's cells follow each other, and its slopes are the same in all of them.
+// The input of the kernels that test, block by block: the fragments' cells, and what is read of them.
+struct Block {
+  std::array<std::int32_t, kBlock + kTestedSlack> x, y;
+  std::array<std::uint32_t, kBlock + kTestedSlack> masks;
+  std::array<CellPlane<float>, kBlock + kTestedSlack> planes;
+};
+
+TileOfCells tile_of_cells(const Tile& tile, const CellGrid& grid) {
+  return {tile.x0, tile.y0, tile.width(), std::countr_zero(static_cast<std::uint32_t>(grid.columns)),
+          std::countr_zero(static_cast<std::uint32_t>(grid.rows))};
+}
+
+// A triangle's cells follow each other.
 void set_items(const SampledTriangles& in, const SampleFragment* fragments, std::size_t count, SampleAccess* accesses,
-               CellPlane<float>* planes) {
-  const CellGrid grid = in.sampling.grid;
-  const Tile tile = in.tile;
-  const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
+               Block& block) {
+  const TileOfCells tile = tile_of_cells(in.tile, in.sampling.grid);
   for (std::size_t first = 0, end = 0; first < count; first = end) {
     const std::uint32_t triangle = fragments[first].triangle;
-    const ScreenDepth depth = in.triangles.triangles[triangle].depth;
-    CellPlane<float> plane = cell_plane(depth, 0.0, 0.0);
-    for (; end < count && fragments[end].triangle == triangle; ++end) {
-      const SampleFragment& fragment = fragments[end];
-      plane.z = cell_depth(depth, fragment.x * cell_width, fragment.y * cell_height);
-      planes[end] = plane;
-      accesses[end] = {cell_number(fragment, tile, grid), triangle, fragment.mask, 0};
-    }
+    for (; end < count && fragments[end].triangle == triangle; ++end)
+      block.x[end] = fragments[end].x, block.y[end] = fragments[end].y, block.masks[end] = fragments[end].mask;
+    set_tested_cells(tile, in.triangles.triangles[triangle].depth,
+                     {triangle, &block.x[first], &block.y[first], &block.masks[first]}, end - first, accesses + first,
+                     &block.planes[first]);
   }
 }
 
@@ -36,14 +44,15 @@ template <class Test>
 SampleCounts test_blocks(const SampledTriangles& in, const std::vector<SampleFragment>& fragments,
                          std::vector<SampleAccess>& accesses, Test&& test) {
   SampleCounts samples{0, 0};
-  std::array<CellPlane<float>, kBlock> planes;
-  accesses.resize(fragments.size());
+  Block block;
+  accesses.resize(fragments.size() + kTestedSlack);
   for (std::size_t first = 0; first < fragments.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, fragments.size() - first);
-    set_items(in, &fragments[first], count, &accesses[first], planes.data());
-    const SampleCounts of_block = test(&accesses[first], planes.data(), count);
+    set_items(in, &fragments[first], count, &accesses[first], block);
+    const SampleCounts of_block = test(&accesses[first], block.planes.data(), count);
     samples.tested += of_block.tested, samples.passed += of_block.passed;
   }
+  accesses.resize(fragments.size());
   return samples;
 }
 

@@ -36,6 +36,17 @@ TEST(Resolve, MeanOfTheSamples) {
   EXPECT_EQ(counters.items_out, 2u);
 }
 
+// Runs that begin and end anywhere.
+TEST(Resolve, MeanOfManySamples) {
+  const Tile tile{0, 0, 1, 1};
+  SampleTile surface(tile, {CellGrid{8, 4}, standard_pattern(8)});
+  for (std::size_t s = 0; s < 256; ++s) surface.triangle[s] = s < 11 ? 0 : s < 71 ? 1 : 2;
+  StageCounters counters;
+  const auto image =
+      resolve(surface, 1, std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, glm::vec3(0), counters);
+  EXPECT_EQ(image[0], glm::vec4(11.0f / 256, 60.0f / 256, 185.0f / 256, 1));
+}
+
 // A triangle that varies is shaded once in each cell where it has samples, and takes part with that many of them.
 TEST(Resolve, VaryingTrianglesAreShadedInEachCell) {
   SurfaceTrace trace(2, 1);
