@@ -16,15 +16,18 @@ cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz
 # The names of techniques and their options, from the tables of docs/techniques.md.
 sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -oE '[a-z0-9.-]+[=:]?' | sort -u |
   sed 's/.*/"&"/' >"$TMPDIR/spec.dict"
-for target in "${targets[@]}"; do
-  found=build/fuzz/found/$target
-  dictionary=tests/fuzz/$target.dict
+# Runs one target, and then prints what it said.
+run_target() {
+  local target=$1 seconds=$2 found=build/fuzz/found/$1 dictionary=tests/fuzz/$1.dict options=() said status=0
   [[ $target != spec ]] || dictionary=$TMPDIR/spec.dict
-  options=()
   [[ ! -e $dictionary ]] || options=(-dict="$dictionary")
   mkdir -p "$found"
-  echo "== $target: $seconds s"
-  build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" "${options[@]}" \
+  said=$(build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" "${options[@]}" \
     -max_total_time="$seconds" -max_len=65536 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
-    -print_final_stats=1 -verbosity=0
-done
+    -print_final_stats=1 -verbosity=0 2>&1) || status=$?
+  printf '== %s: %s s\n%s\n' "$target" "$seconds" "$said"
+  return "$status"
+}
+export -f run_target
+# Each takes one core.
+printf '%s\n' "${targets[@]}" | xargs --max-procs="$(nproc)" -I{} bash -c 'run_target {} "$0"' "$seconds"

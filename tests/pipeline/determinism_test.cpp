@@ -24,14 +24,14 @@ void expect_same_everywhere(const Trace& trace) {
   }
 }
 
-TEST(Determinism, AnyInstructionSetAndNumberOfThreads) { expect_same_everywhere(random_trace(150, 70, 400, 3)); }
+TEST(Determinism, AnyInstructionSetAndNumberOfThreads) { expect_same_everywhere(random_trace(100, 40, 200, 3)); }
 
 TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithMaterials) {
-  expect_same_everywhere(random_surfaces(100, 70, 150, 3));
+  expect_same_everywhere(random_surfaces(70, 40, 80, 3));
 }
 
 TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithDrawState) {
-  expect_same_everywhere(random_states(60, 50, 40, 3));
+  expect_same_everywhere(random_states(50, 34, 30, 3));
 }
 
 // One bin without triangles stands for all of its size, but not where a timeline is recorded.
@@ -86,11 +86,11 @@ void expect_same_in_any_tile(const Trace& trace) {
   }
 }
 
-TEST(Determinism, AnyTileSize) { expect_same_in_any_tile(random_trace(90, 70, 200, 5)); }
+TEST(Determinism, AnyTileSize) { expect_same_in_any_tile(random_trace(50, 38, 100, 5)); }
 
-TEST(Determinism, AnyTileSizeWithMaterials) { expect_same_in_any_tile(random_surfaces(60, 50, 100, 5)); }
+TEST(Determinism, AnyTileSizeWithMaterials) { expect_same_in_any_tile(random_surfaces(46, 34, 70, 5)); }
 
-TEST(Determinism, AnyTileSizeWithDrawState) { expect_same_in_any_tile(random_states(60, 50, 30, 5)); }
+TEST(Determinism, AnyTileSizeWithDrawState) { expect_same_in_any_tile(random_states(46, 34, 24, 5)); }
 
 TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   // Rendered alone, the lower right quarter of a frame has the same pixels in other tiles.

@@ -92,7 +92,7 @@ TEST_F(ProgramTest, CtrlCSaysWhatIsKeptAndHowToGoOn) {
 // Ctrl-C waits neither for a large file nor for a long frame.
 TEST_F(ProgramTest, CtrlCEndsALargeFileAtOnce) {
   for (const Names& storage : {Names{}, Names{"--binary"}}) {
-    Program program(joined({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")}, storage));
+    Program program(joined({"make", "hairball", "--triangles", "3000000", "-o", path("big.json")}, storage));
     wait_until([&] { return folder_.list() != Names{"trace.json"}; });
     program.signal(SIGINT);
     const Outcome outcome = program.wait();

@@ -43,7 +43,7 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
 class ResumeTest : public RunInFolder {
  protected:
   void make_trace(int frames, int triangles = 200) {
-    finish({"make", "soup", "--triangles", std::to_string(triangles), "--width", "32", "--height", "18", "--frames",
+    finish({"make", "soup", "--triangles", std::to_string(triangles), "--width", "16", "--height", "10", "--frames",
             std::to_string(frames), "--orbit", "20", "-o", path("trace.json")});
   }
   Names command(const std::string& verb, const std::string& out, const Names& more) const {

@@ -16,7 +16,7 @@ import numpy
 import beampipe
 from in_folder import PROGRAM, InFolder
 
-LARGE = (1400, 1200)  # more than the buffers of a connection hold
+LARGE = (1000, 700)  # more than the buffers of a connection hold
 
 
 @contextlib.contextmanager

@@ -51,8 +51,8 @@ constexpr const char* kLongPlan = R"({"beampipe_sweep": 1, "traces": ["soup.json
   "techniques": ["msaa:64", "msaa:128", "acaa:64", "msaa:32"], "memory_system.rop_bytes": [4096, 8192, 16384],
   "memory_system.compression": [true, false]})";
 
-// One row after the other is made by a run of its own, with options and files in place of the plan. The values are the
-// same to the last digit, whether the sweep rendered a cell or knew the counts from another one.
+// The rows of each machine are made by a run of its own, with options and files in place of the plan. The values are
+// the same to the last digit, whether the sweep rendered a cell or knew the counts from another one.
 TEST_F(SweepTest, TheTableEqualsSingleRuns) {
   write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"],
     "techniques": ["beam", "beam:order=sorted", "msaa:8", "acaa:8"],
@@ -63,43 +63,45 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
   EXPECT_NE(printed.find(" rendered, "), std::string::npos);
   EXPECT_EQ(printed.find(" 0 the same as one of these"), std::string::npos) << "nothing was shared: " << printed;
 
+  const Names specs = {"beam", "beam:order=sorted", "msaa:8", "acaa:8"};
+  const auto of_technique = [](const Parsed& results, const std::string& spec) -> const Parsed& {
+    return *std::ranges::find_if(results, [&](const Parsed& each) { return each["technique"] == spec; });
+  };
   std::map<std::string, Parsed> runs, comparisons;
   const auto rows = read_table(folder_ / "out/table.csv");
   ASSERT_EQ(rows.size(), 4u * 3 * 2 * 2 * 2 * 2);
   for (auto row : rows) {
     const std::string l2 = row["memory_system.l2_bytes"], bin = row["memory_system.bin_pixels"];
     const bool compressed = row["memory_system.compression"] == "1";
-    const std::string key = row["hardware"] + row["technique"] + l2 + bin + row["memory_system.compression"];
+    const std::string key = row["hardware"] + l2 + bin + row["memory_system.compression"];
+    SCOPED_TRACE(key + row["technique"]);
     if (!runs.contains(key)) {
       Json hardware = read_hardware(row["hardware"]).json;
       Json &parameters = hardware["memory_system"]["parameters"], &sources = hardware["memory_system"]["sources"];
       for (const auto& [name, value] : {std::pair("l2_bytes", l2), std::pair("bin_pixels", bin)})
         parameters[name] = std::stoi(value), sources[name] = "choice";
       write_text(folder_ / "h.json", hardware.dump());
-      Names command = {"run", path("soup.json"), "-t", row["technique"], "--hardware", path("h.json")};
-      command = joined(command, {"--force", "-o", path("single")});
-      if (!compressed) command.push_back("--no-compression");
-      succeed(command);
-      runs[key] = Parsed::parse(read_text(folder_ / "single/report.json"));
-      if (!comparisons.contains(row["hardware"] + bin)) {  // of all techniques, whose ladder is that of the sweep
-        command = {"compare", path("soup.json"), "-t", "beam", "beam:order=sorted", "msaa:8", "acaa:8"};
-        succeed(joined(command, {"--hardware", path("h.json"), "--force", "-o", path("single")}));
-        comparisons[row["hardware"] + bin] = Parsed::parse(read_text(folder_ / "single/report.json"));
-      }
+      const auto results = [&](const std::string& verb, const Names& options) {
+        const Names start = {verb, path("soup.json"), "--hardware", path("h.json"), "--force", "-o", path("single")};
+        succeed(joined(joined(joined(start, options), {"-t"}), specs));
+        return Parsed::parse(read_text(folder_ / "single/report.json"))["results"];
+      };
+      runs[key] = results("run", compressed ? Names{} : Names{"--no-compression"});
+      if (!comparisons.contains(bin)) comparisons[bin] = results("compare", {});
     }
-    const Parsed& result = runs[key]["results"][0];
+    const Parsed& result = of_technique(runs[key], row["technique"]);
     const Parsed& frame = result["frames"][0];
     std::uint64_t operations = 0;
     for (const Parsed& stage : frame["stages"]) operations += stage["ops"]["total"].get<std::uint64_t>();
-    EXPECT_EQ(row["operations"], std::to_string(operations)) << key;
+    EXPECT_EQ(row["operations"], std::to_string(operations));
     for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
-      EXPECT_EQ(row[column], frame[column].dump()) << key << column;
+      EXPECT_EQ(row[column], frame[column].dump()) << column;
     for (const char* column : {"on_chip_bytes_per_pixel", "off_chip_bytes_per_pixel"})
-      EXPECT_EQ(row[column], result[column].dump()) << key << column;
+      EXPECT_EQ(row[column], result[column].dump()) << column;
     std::uint64_t dram = 0;
     for (const auto& [column, value] : row)
       if (column.starts_with("dram_bytes.")) dram += std::stoull(value);
-    EXPECT_EQ(row["dram_bytes"], std::to_string(dram)) << key;
+    EXPECT_EQ(row["dram_bytes"], std::to_string(dram));
     const Parsed& geometry = frame["stages"][0];
     ASSERT_TRUE(geometry["stage"] == "vertex_setup" || geometry["stage"] == "prepass_vertex_setup");
     if (geometry["stage"] == "vertex_setup") {
@@ -107,23 +109,19 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
     }
 
     const Parsed& time = frame["modelled_ms"][row["implementation"]];
-    EXPECT_EQ(row["at_once_ms"], time["at_once"].dump()) << key;
-    EXPECT_EQ(row["on_cores_ms"], time["on_cores"].dump()) << key;
-    EXPECT_EQ(row["in_turn_ms"], time["in_turn"].dump()) << key;
-    EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>()) << key;
-    EXPECT_EQ(row["bottleneck_rate"], time["busiest_rate"].get<std::string>()) << key;
-    EXPECT_EQ(row["pixels_per_bin"], frame["bin_pixels"].dump()) << key;
-    EXPECT_EQ(row["bins_held"].empty(), !result["pixels_on_chip"].get<bool>()) << key;
+    EXPECT_EQ(row["at_once_ms"], time["at_once"].dump());
+    EXPECT_EQ(row["on_cores_ms"], time["on_cores"].dump());
+    EXPECT_EQ(row["in_turn_ms"], time["in_turn"].dump());
+    EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>());
+    EXPECT_EQ(row["bottleneck_rate"], time["busiest_rate"].get<std::string>());
+    EXPECT_EQ(row["pixels_per_bin"], frame["bin_pixels"].dump());
+    EXPECT_EQ(row["bins_held"].empty(), !result["pixels_on_chip"].get<bool>());
 
-    const Parsed& all_compared = comparisons[row["hardware"] + bin]["results"];
-    const auto same = std::find_if(all_compared.begin(), all_compared.end(),
-                                   [&](const Parsed& each) { return each["technique"] == row["technique"]; });
-    ASSERT_NE(same, all_compared.end()) << key;
-    const Parsed& compared = *same;
-    for (const auto& [column, value] : compared["error"].items()) EXPECT_EQ(row[column], value.dump()) << key << column;
+    const Parsed& compared = of_technique(comparisons[bin], row["technique"]);
+    for (const auto& [column, value] : compared["error"].items()) EXPECT_EQ(row[column], value.dump()) << column;
     for (const char* const end : {"", "_low", "_high"}) {
       const std::string name = std::string("equivalent_msaa") + end;
-      EXPECT_EQ(row[std::string("emr") + end], compared.contains(name) ? compared[name].dump() : "") << key << end;
+      EXPECT_EQ(row[std::string("emr") + end], compared.contains(name) ? compared[name].dump() : "") << end;
     }
   }
 }
