@@ -7,6 +7,5 @@ tools/install_packages.sh test
 # Sources are compiled several together, which is faster.
 cmake --preset release -DBEAMPIPE_BENCH=ON -DCMAKE_UNITY_BUILD=ON "$@"
 cmake --build --preset release --parallel "$(nproc)"
-# One more than there are cores, because some tests wait for programs that take their time.
-ctest --preset release --parallel "$(($(nproc) + 1))"
+ctest --preset release --parallel "$(nproc)"
 tests/fuzz/run.sh 12
