@@ -168,6 +168,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_pooled_pixel-inl.h|if (shape.has_final) final.store(record.head->final);|'
   'stages/beam/compose_pooled.cpp|if (final_owners[pixel] == 0) continue;|if (final_owners[pixel] != 0) continue;'
   'stages/beam/compose_pooled.cpp|colors_.forget();|'
+  'stages/beam/compose_pooled.cpp|are_shaded_together() && !result_.lists_visits|are_shaded_together()'
   'stages/beam/compose_pooled.cpp|at_.shape.owners < before|false'
   'stages/beam/compose_pooled_cost.h|of_take * work.takes|of_take * work.wins'
   'stages/beam/compose_pooled_cost.h|of_votes[planes] * work.specks[planes]|of_votes[0] * work.specks[planes]'

@@ -80,7 +80,10 @@ class PooledComposer {
   }
 
   // Computes the colours of all owners that are left, for finish().
-  void shade_all() { colors_.shade_together(pixels_, std::vector<std::uint32_t>(pixels_.words.size(), ~0u)); }
+  void shade_all() {
+    if (!colors_.are_shaded_together()) return;
+    colors_.shade_together(pixels_, std::vector<std::uint32_t>(pixels_.words.size(), ~0u));
+  }
 
   // All owners are final. `pixel`: index in the tile. Returns its colour.
   PixelColor finish(std::uint32_t pixel) {
@@ -336,7 +339,14 @@ class PooledComposer {
     work.words_scanned += pixels_.words.size();
     std::vector<std::uint32_t>& written = result_.collections.emplace_back();
     pixels_.pool.collected();
-    std::vector<std::uint32_t> final_owners(pixels_.words.size());  // bit k: owner k
+    const auto retire_from = [&](std::uint32_t pixel, std::uint32_t owners) {
+      retire_owners(owners);
+      store(closed);
+      written.push_back(pixel);
+    };
+    // Visits to records are listed pixel by pixel.
+    const bool together = colors_.are_shaded_together() && !result_.lists_visits;
+    std::vector<std::uint32_t> final_owners(together ? pixels_.words.size() : 0);  // bit k: owner k
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       look_at(pixel);
       if (at_.word().kind != PixelKind::open) continue;
@@ -345,16 +355,20 @@ class PooledComposer {
       const Candidates candidates = find_candidates(watermark);
       if (candidates.none()) continue;
       at_.open();
-      final_owners[pixel] = final_among(candidates, watermark);
+      const std::uint32_t owners = final_among(candidates, watermark);
+      if (together) {
+        final_owners[pixel] = owners;
+      } else if (owners != 0) {
+        retire_from(pixel, owners);
+      }
     }
+    if (!together) return;
     colors_.shade_together(pixels_, final_owners);
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       if (final_owners[pixel] == 0) continue;
       look_at(pixel);
       at_.take_apart();
-      retire_owners(final_owners[pixel]);
-      store(closed);
-      written.push_back(pixel);
+      retire_from(pixel, final_owners[pixel]);
     }
     colors_.forget();
   }

@@ -31,13 +31,16 @@ class OwnerColors {
 
   OwnerColors(const OwnersBin& bin, OwnersResult& result, PooledWork& work) : bin_(bin), result_(result), work_(work) {}
 
+  // Are there colours for shade_together()? If requests for texels are kept, their order matters.
+  bool are_shaded_together() const {
+    return !bin_.shader.is_flat() && (is_adaptive() || bin_.shading.at == OwnerPlace::covered) &&
+           !(result_.texels && result_.texels->are_kept());
+  }
+
   // Computes colours side by side, for of_final() and of_cover(), until forget(). wanted[pixel]: bit k: that of owner
-  // k; of a covered pixel, any bit. If requests for texels are kept, their order matters, and this does nothing.
+  // k; of a covered pixel, any bit.
   void shade_together(const PooledPixels<Words>& pixels, const std::vector<std::uint32_t>& wanted) {
-    const bool is_adaptive = bin_.shading.at == OwnerPlace::adaptive;
-    if (bin_.shader.is_flat() || !(is_adaptive || bin_.shading.at == OwnerPlace::covered)) return;
-    if (result_.texels && result_.texels->are_kept()) return;
-    std::vector<Together> owners;
+    std::vector<WaitingOwner> owners;
     const auto add = [&](std::uint32_t pixel, std::uint32_t number, const glm::vec2& centroid, const Mask& owned) {
       const std::uint32_t triangle = bin_.list[number];
       if (bin_.shader.is_flat(triangle)) return;
@@ -61,11 +64,11 @@ class OwnerColors {
           add(pixel, slot.triangle(), slot.centroid(), Mask(record.owned(k)));
       }
     }
-    if (is_adaptive) {
+    if (is_adaptive()) {
       shade_adaptively(owners);
     } else {
       std::vector<Invocation> invocations;
-      for (const Together& owner : owners)
+      for (const WaitingOwner& owner : owners)
         invocations.push_back({owner.triangle, bin_.shader.place(owner.pixel, owner.at.x, owner.at.y)});
       for (const glm::vec3& color : bin_.shader.colors(invocations, result_.texels)) shaded_.push_back({color, 1});
     }
@@ -94,12 +97,13 @@ class OwnerColors {
   }
 
   glm::vec3 of_speck(const Fragment& speck) {
-    const bool is_filtered = bin_.shading.at == OwnerPlace::adaptive;
     return shade(speck.pixel, speck.triangle, {speck.centroid_u, speck.centroid_v},
-                 is_filtered ? std::sqrt(speck.alpha) : 1.0f);
+                 is_adaptive() ? std::sqrt(speck.alpha) : 1.0f);
   }
 
  private:
+  bool is_adaptive() const { return bin_.shading.at == OwnerPlace::adaptive; }
+
   // By shade_together(), if it has shaded this one.
   glm::vec3 shaded(std::uint32_t pixel, std::size_t k, std::uint32_t number, const glm::vec2& centroid,
                    const Mask& owned) {
@@ -116,7 +120,7 @@ class OwnerColors {
     if (bin_.shading.at == OwnerPlace::covered || bin_.shader.is_flat(triangle))
       return shade(pixel, triangle, centroid);
     if (bin_.shading.at == OwnerPlace::visible) return shade_at_mean(pixel, triangle, owned, 1.0f);
-    if (bin_.shading.at == OwnerPlace::adaptive) return shade_adaptively(pixel, triangle, owned);
+    if (is_adaptive()) return shade_adaptively(pixel, triangle, owned);
     if (bin_.shading.at == OwnerPlace::quarters)
       return shade_parts(pixel, triangle, owned, bin_.positions.quarters, 0.5f);
     return shade_parts(pixel, triangle, owned, bin_.positions.sixteenths, 0.25f);
@@ -195,7 +199,7 @@ class OwnerColors {
     return range * (area.count / kPositions) > bin_.shading.tolerance;
   }
 
-  bool may_vary(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
+  bool shader_varies(std::uint32_t pixel, std::uint32_t triangle, const Area& area) {
     result_.decisions += bin_.shader.work(triangle).range;
     const float range = bin_.shader.light_range(triangle, pixel, area.at.x, area.at.y, area.footprint, result_.texels);
     end_request(result_.texels);
@@ -205,11 +209,11 @@ class OwnerColors {
   // Halves the pixel in both directions where light varies, up to twice.
   glm::vec3 shade_adaptively(std::uint32_t pixel, std::uint32_t triangle, const Mask& owned) {
     const Area whole = whole_of(owned);
-    if (!may_vary(pixel, triangle, whole)) return shade(pixel, triangle, whole.at, whole.footprint);
+    if (!shader_varies(pixel, triangle, whole)) return shade(pixel, triangle, whole.at, whole.footprint);
     glm::vec3 sum(0.0f);
     const auto add = [&](const Area& area) { sum += area.count * shade(pixel, triangle, area.at, area.footprint); };
     for_each_quarter(owned, [&](std::size_t q, const Area& area) {
-      if (may_vary(pixel, triangle, area)) {
+      if (shader_varies(pixel, triangle, area)) {
         for_each_sixteenth(owned, q, add);
       } else {
         add(area);
@@ -219,7 +223,7 @@ class OwnerColors {
   }
 
   // One of the owners that are shaded together.
-  struct Together {
+  struct WaitingOwner {
     std::uint32_t pixel, triangle;
     glm::vec2 at;  // the centroid of what its triangle covers
     WideMask owned;
@@ -231,7 +235,7 @@ class OwnerColors {
     std::vector<Invocation> invocations;
     std::vector<float> ranges;
   };
-  void add(const Together& owner, const Area& area, Areas& areas) {
+  void add(const WaitingOwner& owner, const Area& area, Areas& areas) {
     areas.areas.push_back(area);
     areas.invocations.push_back({owner.triangle, bin_.shader.place(owner.pixel, area.at.x, area.at.y), area.footprint});
   }
@@ -242,9 +246,9 @@ class OwnerColors {
   }
 
   // The same for all at once: first all pixels, then all quarters, then all that is to be shaded.
-  void shade_adaptively(const std::vector<Together>& owners) {
+  void shade_adaptively(const std::vector<WaitingOwner>& owners) {
     Areas wholes, quarters, pieces;
-    for (const Together& owner : owners) add(owner, whole_of(Mask(owner.owned)), wholes);
+    for (const WaitingOwner& owner : owners) add(owner, whole_of(Mask(owner.owned)), wholes);
     find_ranges(wholes);
     const auto is_halved = [&](std::size_t i) { return varies(wholes.areas[i], wholes.ranges[i]); };
     for (std::size_t i = 0; i < owners.size(); ++i)

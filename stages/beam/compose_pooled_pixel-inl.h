@@ -72,7 +72,7 @@ class PixelAtHand {
     ++work_.splits[shape.planes()];
     count_read(shape.planes() * 4 * Words);
   }
-  // The same once more, which the machine does not have to do.
+  // The same without what it costs.
   HWY_INLINE void take_apart() {
     empty = final = Mask::filled(false);
     new_slots = 0;

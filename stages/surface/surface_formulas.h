@@ -88,8 +88,8 @@ struct PointInputs {
   std::array<Real, 4> base_texel, metallic_roughness_texel, normal_texel, emissive_texel;
 };
 
-// An area whose light may vary: its middle, and directions on its right and lower side. Textures are what the middle
-// shows, as one that is not read is white.
+// An area whose light may vary: its middle, and directions on its right and lower side. In the middle there are the
+// means of normals, the least roughness and the most metal of the texels around it; other textures are white.
 template <class Real>
 struct AreaInputs {
   PointInputs<Real> middle;

@@ -587,7 +587,7 @@ struct SurfaceShader::Point {
   float x, y;  // pixels from the anchor
   Barycentrics<float> weights;
 
-  // `values`: of the vertices.
+  // first, second, third: of the vertices.
   template <std::size_t kCount>
   std::array<float, kCount> interpolated(const std::array<float, kCount>& first,
                                          const std::array<float, kCount>& second,
@@ -858,7 +858,7 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
       if (texels && !is_kept) texels->count(plans[i].texels());
     }
     if (!inputs && !is_kept) return;
-    if (kMost == 1) {
+    if constexpr (kMost == 1) {
       values[0] = filtered(chain, texture, uvs[0], plans[0], noting(is_kept ? texels : nullptr, texture.image, space));
     } else {
       filter_side_by_side(chain, texture, std::span(uvs).first(invocations.size()), plans, values.data());

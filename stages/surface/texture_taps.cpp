@@ -26,7 +26,7 @@ struct Taps {
   std::array<glm::vec4, kMost> color;  // found
 };
 
-// One of 32 levels at most, as a side has at most 2^31 texels.
+// By level.
 struct LevelSizes {
   std::array<std::uint32_t, 32> widths{}, heights{};
 };

@@ -42,6 +42,7 @@ struct OpenTile {
   PooledResult result;
   ChunkRequests spills_of_composing;
   const PixelObservers* observers = nullptr;  // null: nobody looks
+  const SurfaceShader* shader = nullptr;      // null: triangles are flat
 
   OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
            const ChunkPool& pool = ChunkPool(1 << 20))
@@ -61,7 +62,8 @@ struct OpenTile {
   // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
     fragments = fragments_in_order<Words>(triangles, list, tile);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, {}, observers};
+    const TileShader of_tile = shader ? TileShader(*shader, tile) : TileShader(colors);
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, of_tile, false, {}, observers};
     compose_pooled(bin, {fragments, 0}, composing, PooledTile<Words>{pixels, closed, {counts, merges}, result});
     spills_of_composing = result.spills;
     return finish_pooled(bin, finishing, pixels, result);

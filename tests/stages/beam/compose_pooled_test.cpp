@@ -6,6 +6,7 @@
 
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
+#include "tests/stages/surface_scene.h"
 
 namespace beampipe::compose_pooled_test {
 
@@ -196,6 +197,34 @@ TEST(ComposePooled, ACollectionFinishesPixels) {
   EXPECT_EQ(std::ranges::count(taken, tile.pixels.words[0].record), 1) << "the pixel's record is free again";
   EXPECT_TRUE(tile.closed.hides(0, 0, -0.99f)) << "nothing can be seen there any more";
   EXPECT_EQ(tile.result.collections, (std::vector<std::vector<std::uint32_t>>{{0}, {0}})) << "each writes the pixel";
+}
+
+// Also where surfaces of several pixels could be shaded together. A record that is written was read just before.
+TEST(ComposePooled, ACollectionVisitsRecordsPixelByPixel) {
+  Material metal;
+  metal.metallic = 1, metal.roughness = 0.3f;
+  SurfaceTrace scene(4, 1);
+  for (const double half : {0.0, 0.5})
+    for (int x = 0; x < 4; ++x) scene.add_rectangle(x + half, 0, x + half + 0.5, 1, 0.1 + half, metal);
+  scene.add_rectangle(0, 0, 4, 1, 0.9, metal);
+  const ShadedScene shaded(scene.trace);
+  const std::vector<glm::vec3> no_colors(shaded.triangles.triangles.size());
+  OpenTile<8> tile(shaded.triangles, no_colors, {0, 0, 4, 1}, ChunkPool(0));
+  tile.shader = &shaded.shader;
+  tile.result.lists_visits = true;
+  tile.compose_sorted();
+  std::size_t several = 0;  // collections that have written several pixels
+  for (const std::vector<std::uint32_t>& written : tile.result.collections) several += written.size() > 1;
+  EXPECT_GT(several, 0u);
+  std::array<bool, 4> has_record{};
+  for (std::size_t i = 0; i < tile.result.visits.size(); ++i) {
+    const RecordVisit& visit = tile.result.visits[i];
+    if (!visit.is_write) continue;
+    if (has_record[visit.pixel]) {
+      EXPECT_EQ(tile.result.visits[i - 1].pixel, visit.pixel) << i;
+    }
+    has_record[visit.pixel] = visit.chunks > 0;
+  }
 }
 
 }  // namespace beampipe::compose_pooled_test
