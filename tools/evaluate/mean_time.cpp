@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <string_view>
 
 namespace beampipe {
@@ -30,31 +31,43 @@ Interval around(double value, std::vector<double> drawn) {
   return {std::min(value, middle.low), std::max(value, middle.high)};
 }
 
+// On each of several machines. A frame is read once for all, as it may lie in a file.
+std::vector<ModelledTime> mean_times(std::span<const Hardware> machines, std::size_t implementation,
+                                     const TechniqueReport& result) {
+  const auto frames = static_cast<double>(result.frames.size());
+  std::vector<ModelledTime> means(machines.size());
+  for (const FrameReport& frame : result.frames) {
+    const auto work = frame.work();
+    for (std::size_t i = 0; i < machines.size(); ++i) {
+      ModelledTime& mean = means[i];
+      const ModelledTime time = modelled_time(machines[i], machines[i].implementations[implementation], work);
+      for (const TimeKind& kind : kTimes) mean.*kind.ms += time.*kind.ms / frames;
+      if (mean.busiest.empty()) mean.busiest = time.busiest, mean.busiest_rate = time.busiest_rate;
+      for (const StageTime& stage : time.stages) add_stage(stage, frames, mean.stages);
+    }
+  }
+  return means;
+}
+
 }  // namespace
 
 ModelledTime mean_time(const Hardware& hardware, std::size_t implementation, const TechniqueReport& result) {
-  const auto frames = static_cast<double>(result.frames.size());
-  ModelledTime mean;
-  for (const FrameReport& frame : result.frames) {
-    const ModelledTime time = modelled_time(hardware, hardware.implementations[implementation], frame.work());
-    for (const TimeKind& kind : kTimes) mean.*kind.ms += time.*kind.ms / frames;
-    if (mean.busiest.empty()) mean.busiest = time.busiest, mean.busiest_rate = time.busiest_rate;
-    for (const StageTime& stage : time.stages) add_stage(stage, frames, mean.stages);
-  }
-  return mean;
+  return mean_times({&hardware, 1}, implementation, result)[0];
 }
 
 DrawnTime drawn_time(const Hardware& hardware, const std::vector<Hardware>& draws, std::size_t implementation,
                      const TechniqueReport& result) {
-  DrawnTime times{mean_time(hardware, implementation, result), {}};
+  std::vector<Hardware> machines{hardware};
   std::mt19937_64 random(seed_of(result.technique));
-  for (Hardware draw : draws) {
+  for (const Hardware& draw : draws) {
     const double part = uniform(random) - 0.5;
-    double& efficiency = draw.rates.at(kDramEfficiency);
+    double& efficiency = machines.emplace_back(draw).rates.at(kDramEfficiency);
     efficiency = std::min(efficiency * std::pow(kRequestSpread, part), 1.0);
-    times.drawn.push_back(mean_time(draw, implementation, result));
   }
-  return times;
+  std::vector<ModelledTime> times = mean_times(machines, implementation, result);
+  const ModelledTime described = times.front();
+  times.erase(times.begin());
+  return {described, std::move(times)};
 }
 
 Interval DrawnTime::interval(double ModelledTime::*ms) const {
