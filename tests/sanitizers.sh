@@ -40,7 +40,7 @@ case ${1:-} in
     exit 2
     ;;
 esac
-cmake --preset "$preset" "${options[@]}"
+cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON "${options[@]}"
 cmake --build --preset "$preset" --parallel "$(nproc)"
 # Left out is the test that links programs without sanitizers against the libraries.
 ctest --preset "$preset" --parallel "$(nproc)" --exclude-regex '^install$' "${@:2}"
