@@ -42,6 +42,17 @@ std::map<std::string, std::string> found_lines() {
     for (const std::string& spec : example_specs())
       lines[std::string(kind.name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
   }
+  // Pixels in memory, whose caches see the order in which pixels are visited, with flat surfaces and with others.
+  FrameInput in_memory{2};
+  in_memory.memory.framebuffer = Place::in_memory;
+  for (const char* scene : {"fence", "room"}) {
+    Trace trace = make_scene(scene, {.triangles = 1000, .width = 96, .height = 54});
+    for (Material& material : trace.materials)
+      material.base_texture = material.metallic_roughness_texture = material.normal_texture = std::nullopt;
+    trace.images.clear();
+    for (const char* spec : {"beam", "beam:pool=16", "beam:order=stream", "beam:order=sorted", "casav", "msaa:8"})
+      lines[std::string(scene) + " in memory " + spec] = line_of(parse_technique(spec).render(trace, 0, in_memory));
+  }
   return lines;
 }
 
