@@ -109,17 +109,23 @@ glm::dvec4 filtered_in_double(const MipChain& chain, const Texture& texture, con
   return (1 - share) * level(finer, texture.minify) + share * level(std::min(finer + 1, last), texture.minify);
 }
 
+// Without anisotropy.
+Texture random_sampler(Random& random) {
+  Texture texture;
+  texture.wrap_u = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
+  texture.wrap_v = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
+  texture.magnify = random.pick(std::array{Filter::nearest, Filter::linear});
+  texture.minify = random.pick(std::array{Filter::nearest, Filter::linear});
+  texture.mip = random.pick(std::array{MipFilter::none, MipFilter::nearest, MipFilter::linear});
+  return texture;
+}
+
 TEST(TextureFilter, AgreesWithADoubleTwin) {
   Random random(3);
   for (const auto& [width, height] : {std::pair{8u, 8u}, {5u, 3u}, {1u, 16u}, {64u, 2u}, {1u, 1u}}) {
     const MipChain chain = make_mip_chain(random_image(random, width, height), ColorSpace::linear);
     for (int i = 0; i < 20'000; ++i) {
-      Texture texture;
-      texture.wrap_u = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
-      texture.wrap_v = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
-      texture.magnify = random.pick(std::array{Filter::nearest, Filter::linear});
-      texture.minify = random.pick(std::array{Filter::nearest, Filter::linear});
-      texture.mip = random.pick(std::array{MipFilter::none, MipFilter::nearest, MipFilter::linear});
+      const Texture texture = random_sampler(random);
       const glm::vec2 uv(random.real32(-3, 4), random.real32(-3, 4));
       const double footprint = std::exp2(random.real(-3, 8));  // texels of level 0
       const TextureSlopes slopes{{static_cast<float>(footprint / width), 0}, {0, 0}};
@@ -182,12 +188,7 @@ TEST(TextureFilter, SideBySideValuesAreTheSame) {
   for (const auto& [width, height] : {std::pair{8u, 8u}, {5u, 3u}, {1u, 16u}, {64u, 2u}, {1u, 1u}}) {
     const MipChain chain = make_mip_chain(random_image(random, width, height), ColorSpace::srgb);
     for (int round = 0; round < 100; ++round) {
-      Texture texture;
-      texture.wrap_u = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
-      texture.wrap_v = random.pick(std::array{Wrap::repeat, Wrap::clamp, Wrap::mirror});
-      texture.magnify = random.pick(std::array{Filter::nearest, Filter::linear});
-      texture.minify = random.pick(std::array{Filter::nearest, Filter::linear});
-      texture.mip = random.pick(std::array{MipFilter::none, MipFilter::nearest, MipFilter::linear});
+      Texture texture = random_sampler(random);
       texture.anisotropy = static_cast<std::uint32_t>(random.pick(std::array{1, 16}));
       std::vector<glm::vec2> uvs(static_cast<std::size_t>(random.integer(0, 64)));
       std::vector<FilterPlan> plans;

@@ -101,8 +101,8 @@ class ModelledTimesTest(unittest.TestCase):
     def test_every_time_follows_from_counters_and_rates(self):
         with tempfile.TemporaryDirectory() as scratch:
             trace, out = f"{scratch}/trace.json", pathlib.Path(scratch) / "out"
-            subprocess.run([BEAMPIPE, "make", "room", "--triangles", "4000", "--width", "96", "--height", "54", "-o", trace], check=True,
-                           stdout=subprocess.DEVNULL)
+            size = ["--triangles", "4000", "--width", "96", "--height", "54"]
+            subprocess.run([BEAMPIPE, "make", "room", *size, "-o", trace], check=True, stdout=subprocess.DEVNULL)
             for part in ("titan_v", "rtx_4090", "mali_g710", f"{SOURCE}/docs/examples/hardware.json"):
                 subprocess.run([BEAMPIPE, "run", trace, "-t", *SPECS, "--hardware", part, "-o", out, "--force"], check=True,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -65,7 +65,9 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
 
   const Names specs = {"beam", "beam:order=sorted", "msaa:8", "acaa:8"};
   const auto of_technique = [](const Parsed& results, const std::string& spec) -> const Parsed& {
-    return *std::ranges::find_if(results, [&](const Parsed& each) { return each["technique"] == spec; });
+    for (const Parsed& each : results)
+      if (each["technique"] == spec) return each;
+    throw std::runtime_error("no results of " + spec);
   };
   std::map<std::string, Parsed> runs, comparisons;
   const auto rows = read_table(folder_ / "out/table.csv");
