@@ -24,8 +24,8 @@ if [[ ! -e $root/complete ]]; then
     cd "$folder/packages"
     for_arm=(
       libhwy1 libhwy-dev libopenexr-3-1-30 libopenexr-dev libimath-3-1-29 libimath-dev libtbb12 libtbb-dev libtbbmalloc2
-      libtbbbind-2-5 libpng16-16 libpng-dev zlib1g zlib1g-dev libjpeg62-turbo libjpeg62-turbo-dev libturbojpeg0
-      libturbojpeg0-dev libtinyobjloader2rc10 libtinyobjloader-dev libtinygltf2d libtinygltf-dev libstb0 libsqlite3-0
+      libtbbbind-2-5 libpng16-16 libpng-dev zlib1g zlib1g-dev liblzma5 liblzma-dev
+      libjpeg62-turbo libjpeg62-turbo-dev libturbojpeg0 libturbojpeg0-dev libtinyobjloader2rc10 libtinyobjloader-dev libtinygltf2d libtinygltf-dev libstb0 libsqlite3-0
       libsqlite3-dev libboost1.74-dev libgtest-dev
     )
     apt-get download "${for_arm[@]/%/:arm64}" libglm-dev nlohmann-json3-dev libcli11-dev

@@ -7,12 +7,12 @@ set -euo pipefail
 
 build=(
   g++ cmake ninja-build
-  libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev zlib1g-dev libjpeg62-turbo-dev libturbojpeg0-dev
-  libtinyobjloader-dev libtinygltf-dev
+  libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev zlib1g-dev liblzma-dev
+  libjpeg62-turbo-dev libturbojpeg0-dev libtinyobjloader-dev libtinygltf-dev
   libcli11-dev nlohmann-json3-dev
   libsqlite3-dev
   spirv-tools spirv-headers  # reads the shaders of captured programs
-  libboost-dev  # only headers: checksums, exact arithmetic, sockets
+  libboost-dev  # only headers: exact arithmetic, sockets
   node-d3       # D3, which becomes part of the report page
   pybind11-dev python3-dev python3-numpy  # the Python module
   python3-matplotlib                      # `beampipe figure`

@@ -1,6 +1,7 @@
 #include "tools/files/digest.h"
 
-#include <boost/crc.hpp>
+#include <lzma.h>
+
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -12,7 +13,9 @@ namespace {
 
 class Digest {
  public:
-  void add_bytes(const void* bytes, std::size_t size) { crc_.process_bytes(bytes, size); }
+  void add_bytes(const void* bytes, std::size_t size) {
+    crc_ = lzma_crc64(static_cast<const std::uint8_t*>(bytes), size, crc_);
+  }
 
   template <class Value>
   void add(const Value& value) {
@@ -39,13 +42,12 @@ class Digest {
 
   std::string text() const {
     char digits[17];
-    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(crc_.checksum()));
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(crc_));
     return digits;
   }
 
  private:
-  static constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693u;  // ECMA-182
-  boost::crc_optimal<64, kPolynomial, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> crc_;
+  std::uint64_t crc_ = 0;
 };
 
 // Member by member: what lies between members is undefined.

@@ -1,4 +1,4 @@
-// digest_of a trace: whatever changes the picture changes it.
+// Digests: the check value of the XZ format's CRC-64; and whatever changes the picture of a trace changes its digest.
 #include "tools/files/digest.h"
 
 #include <functional>
@@ -8,6 +8,8 @@
 #include "tests/test.h"
 
 namespace beampipe::digest_test {
+
+TEST(Digest, IsTheCrcOfTheXzFormat) { EXPECT_EQ(digest_of("123456789"), "995dc9bbdf1939fa"); }
 
 TEST(Digest, TellsStateApart) {
   std::set<std::string> seen;
