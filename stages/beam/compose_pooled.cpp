@@ -13,10 +13,10 @@
 #include "stages/beam/owner_rules.h"
 #include "stages/data/pixel_depth.h"
 
-// One version for vectors of 256 bits, which hold a whole mask, and one without vectors.
+// Versions for vectors of 256 bits, which hold a whole mask, and one without vectors.
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+  (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stages/beam/compose_pooled.cpp"
 #include "hwy/foreach_target.h"
@@ -654,7 +654,8 @@ void compose(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& coun
     const std::size_t chunks = pixels.pool.beyond_guaranteed();
     if (fragment.triangle >= pixels.closes_at) pixels.pool.close();
     tile.maps.fragments[fragment.pixel] += composer.add(fragment, number, tile.closed);
-    tile.maps.merges[fragment.pixel] += static_cast<float>(composer.work.merges - merges);
+    if (composer.work.merges != merges) [[unlikely]]
+      tile.maps.merges[fragment.pixel] += static_cast<float>(composer.work.merges - merges);
     if (tile.result.lists_claims && pixels.pool.beyond_guaranteed() != chunks)
       tile.result.claims.push_back(
           {fragment.triangle, static_cast<std::int32_t>(pixels.pool.beyond_guaranteed() - chunks)});
