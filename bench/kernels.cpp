@@ -4,12 +4,14 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <random>
 #include <vector>
 
 #include "bench/vector_peak.h"
 #include "simd/coverage.h"
+#include "simd/depth_compare.h"
 #include "simd/depth_range.h"
 #include "simd/depth_span.h"
 #include "simd/mask_table.h"
@@ -19,7 +21,9 @@
 #include "simd/quad_rows.h"
 #include "simd/vertex_transform.h"
 #include "simd/window_owners.h"
+#include "stages/beam/casav_merges.h"
 #include "stages/cost/plane_cost.h"
+#include "stages/raster/traverse_cost.h"
 
 namespace beampipe {
 namespace {
@@ -70,9 +74,9 @@ void vector_peak(benchmark::State& state) {
 }
 BENCHMARK(vector_peak);
 
-// `of_item`: the operations of one item.
-void set_limit(benchmark::State& state, const OperationCounts& of_item) {
-  state.counters["limit_ns"] = static_cast<double>(of_item.total()) / operations_per_ns();
+// `of_items`: the operations of so many items.
+void set_limit(benchmark::State& state, const OperationCounts& of_items, std::size_t items = 1) {
+  state.counters["limit_ns"] = static_cast<double>(of_items.total()) / static_cast<double>(items) / operations_per_ns();
 }
 
 void coverage_of_pixels(benchmark::State& state) {
@@ -145,6 +149,13 @@ void masks_by_table(benchmark::State& state) {
     benchmark::DoNotOptimize(out.data());
   }
   count_items(state, in.size());
+  set_limit(
+      state, count_operations([&](OperationCounts& counts) {
+        TableTriangleOf<Counted<std::int32_t>, Counted<std::uint32_t>, Counted<float>> triangle;
+        for (auto& edge : triangle.edges)
+          edge = {Counted<std::int32_t>(0, counts), Counted<std::uint32_t>(0u, counts), Counted<float>(0, counts)};
+        table_mask_formula(triangle, table);
+      }));
 }
 BENCHMARK(masks_by_table);
 
@@ -180,6 +191,9 @@ void merges_of_fragments(benchmark::State& state) {
     benchmark::DoNotOptimize(aggregates.data());
   }
   count_items(state, fragments.size());
+  MergeWork work;
+  for (const MergeSteps& each : steps) work.add(each);
+  set_limit(state, casav_merges_cost(work, rules, CasavStorage::float32), fragments.size());
 }
 BENCHMARK(merges_of_fragments)->Arg(0)->Arg(1);
 
@@ -196,6 +210,15 @@ void transforms_of_vertices(benchmark::State& state) {
     benchmark::DoNotOptimize(out.data());
   }
   count_items(state, kItems);
+  set_limit(state, count_operations([](OperationCounts& counts) {
+              const Counted<double> one(1.0, counts);
+              std::array<Counted<double>, 16> matrix;
+              matrix.fill(one);
+              const ClipVertex<Counted<double>> clip = transform_vertex(matrix, one, one, one);
+              static_cast<void>(in_view(clip));
+              const ScreenVertex<Counted<double>> screen = project(clip, one, one);
+              to_grid(screen.x), to_grid(screen.y);
+            }));
 }
 BENCHMARK(transforms_of_vertices);
 
@@ -235,6 +258,11 @@ void depths_of_spans(benchmark::State& state) {
     benchmark::DoNotOptimize(depth.data());
   }
   count_items(state, count);
+  set_limit(state, count_operations([](OperationCounts& counts) {
+              const Counted<double> one(1.0, counts);
+              Counted<double> found;
+              depth_span_sample(DepthSpanOf<Counted<double>>{one, one, one, one, one}, one, one, found);
+            }));
 }
 BENCHMARK(depths_of_spans)->Arg(16)->Arg(250);
 
@@ -242,11 +270,22 @@ void masks_of_pixels(benchmark::State& state) {
   const std::vector<TriangleInPixel> in = triangles_in_pixels();
   const PositionGrid grid(static_cast<int>(state.range(0)));
   std::vector<WideMask> out(in.size());
+  EdgesTested tested;
   for (auto _ : state) {
-    position_masks(in.data(), in.size(), grid, out.data());
+    tested = position_masks(in.data(), in.size(), grid, out.data());
     benchmark::DoNotOptimize(out.data());
   }
   count_items(state, in.size());
+  const auto cut = [&](auto&& edge_of) {
+    return count_operations([&](OperationCounts& counts) {
+      const Counted<std::int64_t> one(1, counts);
+      Counted<std::uint32_t> words[kMaxMaskWords];
+      cut_mask(edge_of(EdgeInPixel<Counted<std::int64_t>>{one, one, one}), grid, words);
+    });
+  };
+  OperationCounts of_edges = cut([](const auto& edge) { return narrowed(edge); }) * tested.narrow;
+  of_edges += cut([](const auto& edge) { return edge; }) * tested.wide;
+  set_limit(state, of_edges, in.size());
 }
 BENCHMARK(masks_of_pixels)->Arg(32)->Arg(128)->Arg(256);
 
@@ -260,6 +299,9 @@ void rows_of_quads(benchmark::State& state) {
     benchmark::DoNotOptimize(rows);
   }
   count_items(state, 1);
+  OperationCounts of_cell = step_cost();
+  of_cell += cell_test_cost();
+  set_limit(state, of_cell * (4 * quads * std::size(rows)));
 }
 BENCHMARK(rows_of_quads)->Arg(1)->Arg(4)->Arg(16);
 
@@ -274,12 +316,20 @@ void owners_of_windows(benchmark::State& state) {
   }
   const std::vector<SamplePattern> patterns = cell_patterns(256);
   std::vector<Ownership> owners(count);
+  std::uint64_t tests = 0;
   for (auto _ : state) {
+    tests = 0;
     for (std::size_t first = 0; first < fragments.size(); first += count)
-      window_owners(fragments.data() + first, count, {}, patterns.data(), owners.data());
+      tests += window_owners(fragments.data() + first, count, {}, patterns.data(), owners.data()).tests;
     benchmark::DoNotOptimize(owners.data());
   }
   count_items(state, fragments.size());
+  const OperationCounts of_test = count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    Counted<float> depth;
+    depth_test_scalar(CellPlane<Counted<float>>{one, one, one}, one, one, one, depth);
+  });
+  set_limit(state, of_test * tests, fragments.size());
 }
 BENCHMARK(owners_of_windows)->Arg(1)->Arg(2)->Arg(4)->Arg(16);
 

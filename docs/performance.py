@@ -215,6 +215,7 @@ GROWTH = {
 }
 GROWTH["translucent layers per pixel"] = GROWTH["opaque layers per pixel"]
 GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]
+STREAMED = 1 << 23  # pixels, at most, whose chunks beam:order=stream can number
 
 
 def peak_memory(program, trace, spec, folder):
@@ -250,13 +251,14 @@ def print_growth(arguments):
             for scene, options, value in rows:
                 trace = measure.make(arguments.program, scene, f"{folder}/{scene}.json", *options)
                 change = make_translucent if axis.startswith("translucent") else lambda copy: None
+                specs = [spec for spec in GROWING if axis != "pixels" or value <= STREAMED or "stream" not in spec]
                 with changed_trace(trace, change) as drawn:
-                    times = frame_times(arguments.program, drawn, GROWING, 3, 1)
-                    cells = [f"{times[spec][0]:.1f}, {peak_memory(arguments.program, drawn, spec, folder)}"
-                             for spec in GROWING]
-                measure.print_row(value, *cells)
+                    times = frame_times(arguments.program, drawn, specs, 3, 1)
+                    memory = {spec: peak_memory(arguments.program, drawn, spec, folder) for spec in specs}
+                measure.print_row(value, *(f"{times[spec][0]:.1f}, {memory[spec]}" if spec in times else ""
+                                           for spec in GROWING))
                 sys.stdout.flush()
-                data[axis].append((value, *(times[spec][0] for spec in GROWING)))
+                data[axis].append((value, *(times[spec][0] if spec in times else "NaN" for spec in GROWING)))
     draw(data, arguments.plot)
 
 

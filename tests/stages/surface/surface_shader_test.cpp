@@ -49,7 +49,7 @@ TEST(SurfaceShader, ByPixelItIsTheCentresWhateverPlaceIsAsked) {
   EXPECT_NE(by_place.shader.color(0, {6, 2, 0.0f, 0.5f}), centre);
 }
 
-// Two textures with coordinates of their own; which set has which does not matter.
+// Textures with coordinates of their own; which set has which does not matter.
 TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
   SurfaceTrace scene(16, 16);
   Random random(6);
@@ -58,23 +58,27 @@ TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
   material.emissive = glm::vec3(1.0f);
   material.emissive_texture = material.base_texture;
   material.emissive_texture->uv_set = 1;
+  material.normal_texture = material.emissive_texture;
   scene.add_rectangle(0, 0, 16, 16, 0.5, material);
-  scene.trace.frames[0].lighting.ambient = Ambient{glm::vec3(1.0f), glm::vec3(1.0f)};
+  scene.trace.frames[0].lighting = {{{glm::normalize(glm::vec3(1, 2, 3)), glm::vec3(1.0f)}},
+                                    Ambient{glm::vec3(1.0f), glm::vec3(1.0f)}};
   Mesh& mesh = scene.trace.meshes[0];
   for (const glm::vec2& uv : mesh.uvs[0]) mesh.uvs[1].push_back(0.5f * uv + 0.3f);
   Trace turned = scene.trace;
   std::swap(turned.meshes[0].uvs[0], turned.meshes[0].uvs[1]);
   turned.materials[0].base_texture->uv_set = 1;
-  turned.materials[0].emissive_texture->uv_set = 0;
+  turned.materials[0].emissive_texture->uv_set = turned.materials[0].normal_texture->uv_set = 0;
   const ShadedScene one(scene.trace), other(turned);
   const glm::vec3 color = one.shader.color(0, {9, 4});
   EXPECT_EQ(other.shader.color(0, {9, 4}), color);
-  for (const TextureRole role : {TextureRole::base, TextureRole::emissive}) {
+  const float range = one.shader.light_range(0, {9, 4}, 1.0f);
+  EXPECT_EQ(other.shader.light_range(0, {9, 4}, 1.0f), range);
+  for (const auto texture : {&Material::base_texture, &Material::emissive_texture, &Material::normal_texture}) {
     Trace same = scene.trace;
-    Material& changed = same.materials[0];
-    (role == TextureRole::base ? changed.base_texture : changed.emissive_texture)->uv_set ^= 1;
+    (same.materials[0].*texture)->uv_set ^= 1;
     const ShadedScene at_one_place(same);
     EXPECT_NE(at_one_place.shader.color(0, {9, 4}), color);
+    EXPECT_EQ(at_one_place.shader.light_range(0, {9, 4}, 1.0f) != range, texture == &Material::normal_texture);
   }
 }
 
@@ -83,12 +87,15 @@ TEST(SurfaceShader, DerivativesAgreeOnAPlaneThatFacesTheCamera) {
   SurfaceTrace scene(16, 16);
   Random random(1);
   scene.add_rectangle(0, 0, 16, 16, 0.5, textured_material(scene.add_image(random_image(random, 64, 64))));
-  const ShadedScene analytic(scene.trace), quad(scene.trace, {.derivatives = Derivatives::quad});
-  for (std::int32_t y = 0; y < 16; ++y)
-    for (std::int32_t x = 0; x < 16; ++x) {
-      const glm::vec3 a = analytic.shader.color(0, {x, y}), b = quad.shader.color(0, {x, y});
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-5);
-    }
+  const ShadedScene analytic(scene.trace, {.texture_taps = 16}),
+      quad(scene.trace, {.derivatives = Derivatives::quad, .texture_taps = 16});
+  for (const Footprint& footprint : {Footprint(), Footprint(0.9f, 0.4f, 0.5f)}) {  // a skewed area, too
+    for (std::int32_t y = 0; y < 16; ++y)
+      for (std::int32_t x = 0; x < 16; ++x) {
+        const glm::vec3 a = analytic.shader.color(0, {x, y}, footprint), b = quad.shader.color(0, {x, y}, footprint);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-5);
+      }
+  }
 }
 
 // A floor in perspective. The level that is read follows from the differences of texture coordinates between the
