@@ -25,10 +25,10 @@ if [[ ! -e $root/complete ]]; then
     for_arm=(
       libhwy1 libhwy-dev libopenexr-3-1-30 libopenexr-dev libimath-3-1-29 libimath-dev libtbb12 libtbb-dev libtbbmalloc2
       libtbbbind-2-5 libpng16-16 libpng-dev zlib1g zlib1g-dev liblzma5 liblzma-dev
-      libjpeg62-turbo libjpeg62-turbo-dev libturbojpeg0 libturbojpeg0-dev libtinyobjloader2rc10 libtinyobjloader-dev libtinygltf2d libtinygltf-dev libstb0 libsqlite3-0
-      libsqlite3-dev libboost1.74-dev libgtest-dev
+      libjpeg62-turbo libjpeg62-turbo-dev libturbojpeg0 libturbojpeg0-dev libtinyobjloader2rc10 libtinyobjloader-dev
+      libtinygltf2d libtinygltf-dev libstb0 libsqlite3-0 libsqlite3-dev libboost1.74-dev libgtest-dev spirv-tools
     )
-    apt-get download "${for_arm[@]/%/:arm64}" libglm-dev nlohmann-json3-dev libcli11-dev
+    apt-get download "${for_arm[@]/%/:arm64}" libglm-dev nlohmann-json3-dev libcli11-dev spirv-headers
     for package in *.deb; do dpkg-deb --extract "$package" "$root"; done
   )
   cp -r /usr/share/nodejs "$root/usr/share/"  # D3, which becomes part of the report page
@@ -43,17 +43,17 @@ if [[ ! -e $root/complete ]]; then
 fi
 
 emulator="qemu-aarch64-static;-L;/usr/aarch64-linux-gnu;-E;LD_LIBRARY_PATH=$libraries"
-cmake -G Ninja -S "$source" -B "$folder/build" -DCMAKE_BUILD_TYPE=Release -DBEAMPIPE_TESTS=ON \
+cmake -G Ninja -S "$source" -B "$folder/build" -DCMAKE_BUILD_TYPE=Release -DBEAMPIPE_TESTS=ON -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ \
   -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_LIBRARY_ARCHITECTURE=aarch64-linux-gnu \
   -DCMAKE_FIND_ROOT_PATH="$root" -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY \
   -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY \
   -DCMAKE_CROSSCOMPILING_EMULATOR="$emulator" -DCMAKE_EXE_LINKER_FLAGS="-Wl,-rpath-link,$libraries"
-cmake --build "$folder/build" --parallel "$(nproc)" --target {simd,traces,stages,pipeline,tools}_tests
+cmake --build "$folder/build" --parallel "$(nproc)" --target {simd,traces,stages,spirv,programs,pipeline,tools}_tests
 
 cd "$source"
 failed=0
-for run in simd_tests traces_tests stages_tests pipeline_tests "tools_tests --gtest_filter=Digests.*"; do
+for run in simd_tests traces_tests stages_tests spirv_tests programs_tests pipeline_tests "tools_tests --gtest_filter=Digests.*"; do
   # shellcheck disable=SC2086  # a program and its option
   ${emulator//;/ } "$folder"/build/tests/$run --gtest_brief=1 || failed=1
 done
