@@ -100,7 +100,7 @@ void Bin::render(const std::function<void(Bin&)>& by) {
   by(*this);
   if (texels_ && texels_->texels() > 0) throw std::logic_error("a stage has read texels that none is charged for");
   StageCounters nothing_is_written;
-  if (triangle_fetches_ && !context.shader.is_flat()) triangle_fetches_->flush(nothing_is_written);
+  if (triangle_fetches_) triangle_fetches_->flush(nothing_is_written);
 }
 
 }  // namespace beampipe

@@ -39,7 +39,6 @@ FrameResult render_in_api_order(const FrameContext& context, const BeamOptions& 
     raster.queued(bin.list,
                   [&](const std::vector<Pair>& pairs, std::size_t) { compose(make_fragments.queued(pairs), shade); });
     bin.finish(compose.resolve_regions());
-    shade.finish_fetches();
   });
 }
 
@@ -70,7 +69,6 @@ FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
     });
     bin.finish(compose.resolve_owners(shade));
-    shade.finish_fetches();
   });
 }
 

@@ -57,7 +57,6 @@ FrameResult render_windows(const FrameJob& job, const SortedOptions& sorted) {
       compose(fragments, windows.whole);
       count_specks(fragments, specks);
     }
-    shade.finish_fetches();
     a_buffer.charge_memory(windows.finish(), windows.stage);
     bin.finish(compose.resolve_aggregates(plan.framebuffer.surfaces));
   });
@@ -99,7 +98,6 @@ FrameResult render_one_by_one(const FrameJob& job, const SortedOptions& sorted) 
       shade.visible(next);
       compose(next, {});
     }
-    shade.finish_fetches();
     a_buffer.charge_memory(merges, bin.stage(StageId::compose));
     bin.finish(compose.resolve_aggregates(plan.framebuffer.surfaces));
   });

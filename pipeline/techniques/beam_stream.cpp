@@ -47,7 +47,6 @@ FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t clo
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
     });
     bin.finish(compose.resolve_owners(shade));
-    shade.finish_fetches();
   });
 }
 

@@ -51,11 +51,11 @@ struct CasavOptions {
   int layers = 3;  // aggregates of a pixel, without an A-buffer
 };
 
-std::vector<Surface> aggregate_surfaces(const CasavOptions& beam) {
+std::vector<Surface> aggregate_surfaces(const CasavOptions& casav) {
   const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
-  if (beam.rules == Rules::over) return {coverage, color};
+  if (casav.rules == Rules::over) return {coverage, color};
   const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
-  switch (beam.storage) {
+  switch (casav.storage) {
     case CasavStorage::slides:
       return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
     case CasavStorage::text:
@@ -66,15 +66,15 @@ std::vector<Surface> aggregate_surfaces(const CasavOptions& beam) {
   return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
 }
 
-Framebuffer casav_framebuffer(const CasavOptions& beam) {
-  std::vector<Surface> surfaces = aggregate_surfaces(beam);
-  if (beam.order == CasavOrder::sorted) return {.surfaces = surfaces};
-  const auto layers = static_cast<std::uint32_t>(beam.layers);
+Framebuffer casav_framebuffer(const CasavOptions& casav) {
+  std::vector<Surface> surfaces = aggregate_surfaces(casav);
+  if (casav.order == CasavOrder::sorted) return {.surfaces = surfaces};
+  const auto layers = static_cast<std::uint32_t>(casav.layers);
   for (Surface& surface : surfaces) {
     surface.format = times(surface.format.c_str(), layers);
     surface.bytes_per_pixel *= layers;
   }
-  return {.surfaces = surfaces, .place = beam.order == CasavOrder::near_first ? Place::on_chip : Place::in_memory};
+  return {.surfaces = surfaces, .place = casav.order == CasavOrder::near_first ? Place::on_chip : Place::in_memory};
 }
 
 struct RecordBytes {
@@ -118,17 +118,17 @@ std::vector<Aggregate> compose_lists(const CasavOptions& options, const MergePos
              : compose_over(fragments, lists, counters, observers);
 }
 
-FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
+FrameResult render_sorted(const FrameJob& job, const CasavOptions& casav) {
   const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
-  const RecordBytes bytes = record_bytes(beam);
-  const BeamFragmentOptions options = fragment_options(beam, positions);
+  const RecordBytes bytes = record_bytes(casav);
+  const BeamFragmentOptions options = fragment_options(casav, positions);
   const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::a_buffer,
                                 StageId::compose, StageId::resolve},
-                     .framebuffer = casav_framebuffer(beam),
+                     .framebuffer = casav_framebuffer(casav),
                      .pair_bytes = kPairWorkingBytes + kSortBytes,
-                     .order = beam.sort == SortKey::centroid ? "near to far, by the depth at the centroid"
-                                                             : "near to far, by the nearest depth"};
+                     .order = casav.sort == SortKey::centroid ? "near to far, by the depth at the centroid"
+                                                              : "near to far, by the nearest depth"};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
                                   kQueueItems);
@@ -139,9 +139,9 @@ FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
 
     std::vector<Fragment>& fragments = make_fragments.queued(raster());
     shade(fragments);
-    const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
+    const ABuffer& lists = a_buffer(sort_records(fragments, casav.sort));
     const std::vector<PixelColor> aggregates =
-        pixel_colors(compose_lists(beam, positions, fragments, lists, bin.observers(), composition.timed()));
+        pixel_colors(compose_lists(casav, positions, fragments, lists, bin.observers(), composition.timed()));
     const std::vector<float>& merges = bin.pixel_counter("merges") = record_counts(lists);
     a_buffer.charge_memory(merges, composition);
     charge_aggregates(bin, plan.framebuffer.surfaces, pixels_with(merges), full_pixels(aggregates));
@@ -152,14 +152,14 @@ FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
 }
 
 // Without an A-buffer.
-FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
+FrameResult render_layers(const FrameJob& job, const CasavOptions& casav) {
   const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
-  const BeamFragmentOptions options = fragment_options(beam, positions);
-  const bool sorts = beam.order == CasavOrder::near_first;
+  const BeamFragmentOptions options = fragment_options(casav, positions);
+  const bool sorts = casav.order == CasavOrder::near_first;
   BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::compose,
                           StageId::resolve},
-               .framebuffer = casav_framebuffer(beam),
+               .framebuffer = casav_framebuffer(casav),
                .keeps_tile_size = sorts,
                .sorts_lists = sorts};
   if (sorts) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
@@ -170,7 +170,7 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
                                   kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeLayersUnit compose(bin, static_cast<std::size_t>(beam.layers), {positions, beam.merge, beam.storage},
+    ComposeLayersUnit compose(bin, static_cast<std::size_t>(casav.layers), {positions, casav.merge, casav.storage},
                               plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
@@ -200,9 +200,9 @@ CasavOptions with_rules(CasavOptions options) {
   return options;
 }
 
-FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
-  const CasavOptions options = with_rules(beam);
-  return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
+FrameResult render_casav(const FrameJob& job, const CasavOptions& casav) {
+  const CasavOptions options = with_rules(casav);
+  return casav.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
 std::vector<ErrorSource> error_sources(const CasavOptions& options) {

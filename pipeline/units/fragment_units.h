@@ -96,8 +96,6 @@ class ShadeUnit {
     stage_.counters.ops += decisions;
   }
 
-  void finish_fetches() { bin_.triangle_fetches().flush(stage_.counters); }
-
  private:
   template <class Item>
   void charge_visible(const std::vector<Item>& shaded) {
