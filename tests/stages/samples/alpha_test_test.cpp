@@ -54,8 +54,9 @@ TEST(AlphaTest, TheCutoffItselfPasses) {
   for (const float cutoff : {std::nextafter(alpha, 0.0f), alpha, std::nextafter(alpha, 1.0f)}) {
     trace.trace.materials[0].alpha_cutoff = cutoff;
     const ShadedScene scene(trace.trace);
-    EXPECT_EQ(tested(scene, AlphaCoverage::test, {{0, 0, 6, 1, 0xffu}}, {glm::vec2(0.5f)}).fragments.size(),
-              cutoff > alpha ? 0u : 1u);
+    for (const AlphaCoverage coverage : {AlphaCoverage::test, AlphaCoverage::by_sample})
+      EXPECT_EQ(tested(scene, coverage, {{0, 0, 6, 1, 0xffu}}, {glm::vec2(0.5f)}).fragments.size(),
+                cutoff > alpha ? 0u : 1u);
   }
 }
 
