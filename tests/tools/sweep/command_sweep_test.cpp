@@ -188,13 +188,15 @@ TEST_F(SweepTest, AKilledSweepGoesOn) {
   EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 2 * kept);
 
   // A result whose end is missing is none, and neither is one of which a single digit has changed.
-  auto file = std::filesystem::directory_iterator(folder_ / "out/cells");
-  write_text(file->path(), "{\"key\": ");
-  ++file;
-  std::string changed = read_text(file->path());
+  // A file that is written anew may be listed again, and one that was being written is none yet.
+  std::vector<std::filesystem::path> files;
+  for (const auto& file : std::filesystem::directory_iterator(folder_ / "out/cells"))
+    if (file.path().extension() == ".json") files.push_back(file.path());
+  write_text(files[0], "{\"key\": ");
+  std::string changed = read_text(files[1]);
   char& digit = changed.at(changed.find("\"dram_bytes\":") + std::string("\"dram_bytes\":").size());
   digit = digit == '7' ? '8' : '7';
-  write_text(file->path(), changed);
+  write_text(files[1], changed);
   const std::string printed = succeed(sweep({"--jobs", "2"}));
   EXPECT_NE(printed.find(std::to_string(kept - 2) + " kept from earlier"), std::string::npos) << printed;
   EXPECT_EQ(read_text(folder_ / "out/table.csv"), read_text(folder_ / "whole/table.csv"));
