@@ -61,7 +61,7 @@ SHARED_IN_GROUP = {
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
     "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/cutout_cells.h", "stages/raster/reference_raster.h",
     "stages/raster/reference_raster_cost.h", "stages/raster/reference_spans.h", "stages/raster/traverse.h",
-    "stages/raster/traverse_cost.h", "stages/samples/sample_depth_cost.h", "stages/samples/sample_formulas.h",
+    "stages/raster/traverse_cost.h", "stages/samples/sample_formulas.h",
     "stages/temporal/temporal_formulas.h"}
 # For the self-test: the rule that is expected ("-" for none), the file, and its text.
 CASES = r"""

@@ -4,7 +4,6 @@
 #include <type_traits>
 
 #include "simd/conserve.h"
-#include "simd/depth_compare.h"
 #include "stages/beam/specks_cost.h"
 #include "stages/cost/plane_cost.h"
 #include "stages/data/beam_aggregate.h"
@@ -102,15 +101,6 @@ inline OperationCounts closing_cost() {
   });
 }
 
-// The comparison of a fragment's depth at one position.
-inline OperationCounts depth_compare_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    Counted<float> depth;
-    depth_test_scalar({one, one, one}, one, one, one, depth);
-  });
-}
-
 // fp16 colours are converted when an aggregate is loaded and when it is stored.
 template <class Channel>
 constexpr OperationCounts format_cost() {
@@ -120,7 +110,7 @@ constexpr OperationCounts format_cost() {
 template <std::size_t Words, class Channel>
 void charge(const ComposeWork& work, StageCounters& counters) {
   static const UnitCost of_mask = mask_cost(Words), of_contestant = contest_cost(Words),
-                        of_depth_test = depth_compare_cost(), of_addition = addition_cost(), of_speck = speck_cost(),
+                        of_depth_test = depth_test_cost(), of_addition = addition_cost(), of_speck = speck_cost(),
                         of_surface_test = speck_test_cost(), of_closing = closing_cost();
   constexpr OperationCounts of_visible_part{.special = 1}, of_order_test{.add = 1}, of_closed_test{.add = 1};
   counters.items_in += work.fragments;

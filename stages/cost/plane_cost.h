@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "simd/depth_compare.h"
 #include "simd/plane_order.h"
 #include "stages/cost/counting.h"
 #include "stages/data/pixel_depth.h"
@@ -22,11 +23,28 @@ inline OperationCounts nearer_cost() {
   });
 }
 
+// To test a plane at one place against the depth that is stored there.
+inline OperationCounts depth_test_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    Counted<float> depth;
+    depth_test_scalar({one, one, one}, one, one, one, depth);
+  });
+}
+
 // To make a triangle's plane in a pixel.
 inline OperationCounts plane_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
     to_float(ScreenDepthOf<Counted<double>>{one, one, one, one, one}.at(one, one)), to_float(one), to_float(one);
+  });
+}
+
+// To make its plane in a cell.
+inline OperationCounts cell_plane_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<double> one(1.0, counts);
+    cell_plane<Counted<double>>({one, one, one, one, one}, one, one);
   });
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stages/cost/counting.h"
+#include "stages/cost/plane_cost.h"
 #include "stages/data/sample_tile.h"
-#include "stages/samples/sample_depth_cost.h"
 
 namespace beampipe {
 
@@ -27,7 +27,7 @@ inline void charge_blend(std::uint64_t fragments, const SampleCounts& samples, s
   counters.items_in += samples.tested;
   counters.items_out += samples.passed;
   counters.ops += cell_plane_cost() * fragments;
-  counters.ops += sample_depth_cost() * samples.tested;
+  counters.ops += depth_test_cost() * samples.tested;
   counters.ops += blend_cost(channels) * samples.passed;
   counters.bytes_read += samples.tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
   counters.bytes_read += samples.passed * color_bytes;

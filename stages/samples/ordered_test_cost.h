@@ -1,9 +1,9 @@
 // What ordered_test is charged.
 #pragma once
 
+#include "stages/cost/plane_cost.h"
 #include "stages/data/sample_tile.h"
 #include "stages/rop/rop_cost.h"
-#include "stages/samples/sample_depth_cost.h"
 
 namespace beampipe {
 
@@ -21,7 +21,7 @@ inline OperationCounts ordered_test_cost(const RopRule& rule, const Stencil& ste
     ops += stencil_operation_cost(stencil.pass, stencil) * samples.passed;
   }
   if (rule.depth != Compare::always || rule.writes_depth)
-    ops += sample_depth_cost() * (samples.tested - samples.stencil_failed);
+    ops += depth_test_cost() * (samples.tested - samples.stencil_failed);
   return ops;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stages/cost/counting.h"
+#include "stages/cost/plane_cost.h"
 #include "stages/data/sample_tile.h"
-#include "stages/samples/sample_depth_cost.h"
 
 namespace beampipe {
 
@@ -13,7 +13,7 @@ inline void charge_depth_test(std::uint64_t fragments, const SampleCounts& sampl
   counters.items_in += samples.tested;
   counters.items_out += samples.passed;
   counters.ops += cell_plane_cost() * fragments;
-  counters.ops += sample_depth_cost() * samples.tested;
+  counters.ops += depth_test_cost() * samples.tested;
   counters.bytes_read += samples.tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
   counters.bytes_written += samples.passed * bytes_written;
   counters.lanes_used += samples.tested;
@@ -25,7 +25,7 @@ inline void charge_depth_test_in_shader(std::uint64_t launched, std::uint64_t le
                                         const SamplePattern& pattern, StageCounters& counters) {
   const std::uint64_t invocations = 4 * launched;
   counters.ops += cell_plane_cost() * invocations;
-  counters.ops += sample_depth_cost() * (invocations * static_cast<std::uint64_t>(pattern.count));
+  counters.ops += depth_test_cost() * (invocations * static_cast<std::uint64_t>(pattern.count));
   counters.bytes_read += samples.tested * kSampleDepthBytes;
   counters.lanes_issued += 4 * (launched - left);
 }
