@@ -13,10 +13,11 @@ PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in o
 machine affects all of them alike. A time is the least of the runs, in `growth` their median, with the memory model off.
 `growth` makes its own traces, and draws the plot with gnuplot. `items` prints nanoseconds per item of each stage of
 `beam`, on one thread; with --peak, also what the operations that the stage is charged take at N operations per
-nanosecond (operations_per_ns of vector_peak in build/release/bench/kernels_benchmark). `memory` prints what modelling memory costs: a frame's time with the model ÷ that without.
-`textures` prints what materials cost: a frame's time ÷ that of the same frame with one flat colour for each draw.
-`peers` compares with other renderers, which FOLDER has: peer_gl (llvmpipe) and, if it is there, peer_embree draw the
-triangles of `beampipe export-soup` and print JSON with the least time of a frame, "ms_frame_min".
+nanosecond (operations_per_ns of vector_peak in build/release/bench/kernels_benchmark). `memory` prints what modelling
+memory costs: a frame's time with the model ÷ that without. `textures` prints what materials cost: a frame's time ÷ that
+of the same frame with one flat colour for each draw. `peers` compares with other renderers, which FOLDER has: peer_gl
+(llvmpipe) and, if it is there, peer_embree draw the triangles of `beampipe export-soup` and print JSON with the least
+time of a frame, "ms_frame_min".
 """
 import argparse
 import contextlib

@@ -53,7 +53,7 @@ cmake --build "$folder/build" --parallel "$(nproc)" --target {simd,traces,stages
 
 cd "$source"
 failed=0
-for run in simd_tests traces_tests stages_tests spirv_tests programs_tests pipeline_tests "tools_tests --gtest_filter=Digests.*"; do
+for run in {simd,traces,stages,spirv,programs,pipeline}_tests "tools_tests --gtest_filter=Digests.*"; do
   # shellcheck disable=SC2086  # a program and its option
   ${emulator//;/ } "$folder"/build/tests/$run --gtest_brief=1 || failed=1
 done

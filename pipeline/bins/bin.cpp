@@ -99,6 +99,7 @@ void Bin::starts_pass(Pass pass, Geometry geometry) {
 void Bin::render(const std::function<void(Bin&)>& by) {
   by(*this);
   if (texels_ && texels_->texels() > 0) throw std::logic_error("a stage has read texels that none is charged for");
+  // Serves the fetch that is still open, on the account of the stage that asked.
   StageCounters nothing_is_written;
   if (triangle_fetches_) triangle_fetches_->flush(nothing_is_written);
 }

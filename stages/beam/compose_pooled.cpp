@@ -13,10 +13,9 @@
 #include "stages/beam/owner_rules.h"
 #include "stages/data/pixel_depth.h"
 
-// Versions for vectors of 256 bits, which hold a whole mask, and one without vectors.
+// Versions for AVX2 and AVX-512, both with vectors of 256 bits, which hold a whole mask, and one without vectors.
 #undef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stages/beam/compose_pooled.cpp"
 #include "hwy/foreach_target.h"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets with clang's libFuzzer and sanitizers, and runs each: tests/fuzz/run.sh [SECONDS each] [TARGET...]
+# Kernels are built for the baseline instruction set only, because the targets read files, which is the same on all.
 # Inputs that reach new code go to build/fuzz/found/TARGET, and the next run starts from them. A crash leaves its input
 # in build/fuzz and ends the script with an error.
 set -euo pipefail

@@ -87,14 +87,16 @@ TEST(SurfaceShader, DerivativesAgreeOnAPlaneThatFacesTheCamera) {
   SurfaceTrace scene(16, 16);
   Random random(1);
   scene.add_rectangle(0, 0, 16, 16, 0.5, textured_material(scene.add_image(random_image(random, 64, 64))));
-  const ShadedScene analytic(scene.trace, {.texture_taps = 16}),
-      quad(scene.trace, {.derivatives = Derivatives::quad, .texture_taps = 16});
-  for (const Footprint& footprint : {Footprint(), Footprint(0.9f, 0.4f, 0.5f)}) {  // a skewed area, too
-    for (std::int32_t y = 0; y < 16; ++y)
-      for (std::int32_t x = 0; x < 16; ++x) {
-        const glm::vec3 a = analytic.shader.color(0, {x, y}, footprint), b = quad.shader.color(0, {x, y}, footprint);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-5);
-      }
+  const Footprint square, skewed(0.9f, 0.4f, 0.5f);
+  for (const int taps : {ShadingRules{}.texture_taps, 16}) {
+    const ShadedScene analytic(scene.trace, {.texture_taps = taps}),
+        quad(scene.trace, {.derivatives = Derivatives::quad, .texture_taps = taps});
+    for (const Footprint& footprint : {square, skewed})
+      for (std::int32_t y = 0; y < 16; ++y)
+        for (std::int32_t x = 0; x < 16; ++x) {
+          const glm::vec3 a = analytic.shader.color(0, {x, y}, footprint), b = quad.shader.color(0, {x, y}, footprint);
+          for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-5);
+        }
   }
 }
 

@@ -188,7 +188,8 @@ TEST_F(SweepTest, AKilledSweepGoesOn) {
   EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 2 * kept);
 
   // A result whose end is missing is none, and neither is one of which a single digit has changed.
-  // A file that is written anew may be listed again, and one that was being written is none yet.
+  // Files are listed before any is replaced, since a new one may be listed, too; what the kill left unfinished is no
+  // result.
   std::vector<std::filesystem::path> files;
   for (const auto& file : std::filesystem::directory_iterator(folder_ / "out/cells"))
     if (file.path().extension() == ".json") files.push_back(file.path());
