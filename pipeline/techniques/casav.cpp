@@ -1,4 +1,4 @@
-// CASAV, correlation-aware semi-analytic visibility: the beam pipeline as published (Crassin et al. 2018). Conservative
+// CASAV, correlation-aware semi-analytic visibility: the pipeline of Crassin et al. 2018. Conservative
 // raster makes pairs; they become fragments with analytic coverage and a localization mask, are shaded, sorted in an
 // A-buffer, and merged near to far into one aggregate per pixel. Without the A-buffer, each pixel keeps a few
 // aggregates, into which fragments are merged as they come: near to far, roughly, in sorted bins, or in primitive
@@ -289,7 +289,7 @@ SpecOptions casav_options(CasavOptions& o) {
 TechniqueKind casav_kind() {
   return {.name = "casav",
           .description =
-              "correlation-aware semi-analytic visibility, the beam pipeline as published: a 32-bit mask from a table, "
+              "correlation-aware semi-analytic visibility, the pipeline of the paper: a 32-bit mask from a table, "
               "and one aggregate with a depth slab per pixel; the options are other readings of the paper",
           .source = "Crassin et al. 2018",
           .examples = {"casav", "casav:mask=exact", "casav:storage=text", "casav:reading=literal",

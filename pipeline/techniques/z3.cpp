@@ -70,8 +70,7 @@ TechniqueKind z3_kind() {
           .make = make_from(
               Z3Options{},
               [](Z3Options& o) -> SpecOptions {
-                return {choice("shape", o, {{"32x2", {32, 2}}, {"32x3", {32, 3}}, {"128x3", {128, 3}}},
-                               "positions of the mask x layers")};
+                return {choice("shape", o, {{"32x3", {32, 3}}, {"128x3", {128, 3}}}, "positions of the mask x layers")};
               },
               [](const Z3Options& o) {
                 return Technique{.framebuffer = z3_framebuffer(o),

@@ -32,6 +32,7 @@ struct OperationCounts {
     wide += other.wide;
     return *this;
   }
+  friend OperationCounts operator+(OperationCounts one, const OperationCounts& other) { return one += other; }
   friend OperationCounts operator*(OperationCounts counts, std::uint64_t times) {
     counts.mul_add *= times;
     counts.add *= times;

@@ -27,12 +27,11 @@ struct Z3Pixel {
 };
 #pragma pack(pop)
 
-static_assert(sizeof(Z3Pixel<1, 2>) == 36);
 static_assert(sizeof(Z3Pixel<1, 3>) == 50);
 static_assert(sizeof(Z3Pixel<4, 3>) == 74);
 
 // The instances that exist: X(words, layers).
-#define BEAMPIPE_Z3_PIXELS(X) X(1, 2) X(1, 3) X(4, 3)
+#define BEAMPIPE_Z3_PIXELS(X) X(1, 3) X(4, 3)
 
 // Calls shape.operator()<Words, Layers>() with the numbers of the instance. Throws std::invalid_argument if there is no
 // such instance.

@@ -46,8 +46,8 @@ class Captures(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = holder.name
 
-    def trace_of(self, program, *words):
-        """The trace of a program."""
+    def trace_of(self, program, *words, agrees=True):
+        """The trace of a program. `agrees`: it has all that makes up the program's picture."""
         if shutil.which(program) is None:
             self.skipTest(f"{program} is not installed")
         path = os.path.join(self.folder, "frame.json")
@@ -57,7 +57,9 @@ class Captures(unittest.TestCase):
         with open(path) as file:
             trace = json.load(file)
         self.check(trace)
-        self.check_with_program(path)
+        if agrees:
+            self.check_with_program(path)
+        self.printed = done.stdout
         return trace
 
     def check_with_program(self, path):
@@ -152,6 +154,43 @@ class Captures(unittest.TestCase):
                           if "clears_stencil" in state], [(3, 9, True)])
         self.assertEqual({draw["cull"] for draw in frame["draws"]}, {"none"})
 
+    def frame_of_targets(self, what, **options):
+        program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "own_targets.py")
+        trace = self.trace_of(sys.executable, "--frame", "10", "--", sys.executable, program, what, **options)
+        return trace["frames"][0]
+
+    def test_colours_are_encoded_as_the_target_is_seen(self):
+        for what, target in (("window_srgb", "srgb"), ("object_srgb", "srgb"), ("object_codes", "unorm")):
+            with self.subTest(what):
+                frame = self.frame_of_targets(what)
+                self.assertEqual((frame["target"], frame["left_out"]), (target, []))
+                note = r"target \d+ is a framebuffer object of OpenGL: its rows are stored bottom up"
+                (self.assertRegex if "object" in what else self.assertNotRegex)(self.printed, note)
+
+    def test_what_a_trace_lacks_of_its_targets_is_named(self):
+        earlier = [f"{what} is not cleared before the first draw" for what in ("colour", "depth")]
+        for what, reasons in (("uncleared", earlier), ("part", ["a clear of a part of the target"]),
+                              ("mixed_srgb", ["sRGB encoding differs from that of the largest draw"])):
+            with self.subTest(what):
+                frame = self.frame_of_targets(what, agrees=False)
+                self.assertEqual([one["reason"] for one in frame["left_out"]], reasons)
+                for reason in reasons:
+                    self.assertRegex(self.printed, rf"left out: 1 [^\n]*: {reason.removeprefix('a clear ')}\n")
+
+    def test_a_target_that_no_pass_draws_to(self):
+        if shutil.which("glxgears") is None:
+            self.skipTest("glxgears is not installed")
+        done = capture("--list", "--frame", "5", "--target", "1", "--", "glxgears")
+        self.assertRegex(done.stderr, r"\Abeampipe: error: no pass draws to target 1; expected one of \d+ "
+                                      r"\(see --list\)\n\Z")
+
+    def test_a_frame_that_is_not_reached_says_how_far_it_went(self):
+        if shutil.which("glxgears") is None:
+            self.skipTest("glxgears is not installed")
+        done = capture("--list", "--frame", "1000000", "--timeout", "4", "--", "glxgears")
+        self.assertRegex(done.stderr, r"\Abeampipe: error: glxgears: no frame captured within the time limit "
+                                      r"\(frame \d+ was reached; see --timeout\)")
+
     def test_a_program_that_ends_is_one_line(self):
         done = capture("-o", os.path.join(self.folder, "a.json"), "--", "false")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
@@ -180,7 +219,8 @@ class Captures(unittest.TestCase):
         start = time.monotonic()
         done = capture("--frame", "1", "--timeout", "3", "-o", os.path.join(self.folder, "a.json"), "--", "sleep", "1000")
         self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, r"\Abeampipe: error: sleep: no picture shown within the time limit[^\n]*\n\Z")
+        self.assertRegex(done.stderr, r"\Abeampipe: error: sleep: no picture shown within the time limit "
+                                      r"\(0 frames were presented; see --timeout\)[^\n]*\n\Z")
         self.assertLess(time.monotonic() - start, 60)
 
     def test_wrong_usage_is_exit_code_2(self):

@@ -62,8 +62,9 @@ def open_window():
     return display, window
 
 
-def start_egl(display, window, wanted=()):
-    """A function that shows what was drawn. `wanted`: more attributes of EGL's configuration and their values."""
+def start_egl(display, window, wanted=(), surface=()):
+    """A function that shows what was drawn. `wanted` and `surface`: more attributes, and their values, of EGL's
+    configuration and of the window's surface."""
     egl = library("EGL")
     for name in ("eglGetDisplay", "eglCreateWindowSurface", "eglCreateContext"):
         getattr(egl, name).restype = ctypes.c_void_p
@@ -75,7 +76,8 @@ def start_egl(display, window, wanted=()):
     if not (egl.eglInitialize(device, None, None) and egl.eglBindAPI(EGL_OPENGL_ES_API)
             and egl.eglChooseConfig(device, wanted, ctypes.byref(config), 1, ctypes.byref(count)) and count.value):
         sys.exit("no OpenGL ES 3")
-    surface = ctypes.c_void_p(egl.eglCreateWindowSurface(device, config, window, None))
+    surface = (ctypes.c_int * (len(surface) + 1))(*surface, EGL_NONE)
+    surface = ctypes.c_void_p(egl.eglCreateWindowSurface(device, config, window, surface))
     context = ctypes.c_void_p(egl.eglCreateContext(device, config, None, (ctypes.c_int * 3)(EGL_CLIENT_VERSION, 3,
                                                                                            EGL_NONE)))
     if not egl.eglMakeCurrent(device, surface, surface, context):

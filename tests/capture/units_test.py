@@ -7,6 +7,7 @@ import pickle
 import struct
 import sys
 import tempfile
+import types
 import unittest
 import zlib
 from unittest import mock
@@ -16,6 +17,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
                 os.path.join(os.path.dirname(__file__), "../../tools/capture"))
 sys.dont_write_bytecode = True
+import api_state
 import attempts
 import clears
 import failure
@@ -99,15 +101,23 @@ class Summaries(unittest.TestCase):
     def test_of_one(self):
         frame = {"width": 4, "height": 3, "draws": [{"mesh": "one"}], "left_out": []}
         self.assertEqual(self.lines([frame], 20), [
-            "a.json: frame 20, 4 x 3 pixels, 1 draw, 1 triangle, 2 meshes, 1 fragment shader, 2 images, 1.3 MB"])
+            "a.json: frame 20, 4 x 3 pixels, 1 draw, 1 triangle, 2 meshes, 1 fragment shader, 1 image, 1.3 MB"])
 
     def test_of_several(self):
         left_out = {"reason": "smooth lines", "draws": 1, "primitives": 1}
         frames = [{"width": 4, "height": 3, "draws": [{"mesh": "one"}, {"mesh": "quad"}], "left_out": left}
                   for left in ([left_out], [], [left_out])]
         self.assertEqual(self.lines(frames, 20), [
-            "a.json: frames 20 to 22, 4 x 3 pixels, 6 draws, 9 triangles, 2 meshes, 1 fragment shader, 2 images, 1.3 MB",
+            "a.json: frames 20 to 22, 4 x 3 pixels, 6 draws, 9 triangles, 2 meshes, 1 fragment shader, 1 image, 1.3 MB",
             "left out: 2 draws, 2 primitives: smooth lines"])
+
+    def test_of_what_are_no_draws(self):
+        left_out = [{"reason": reason, "draws": 2, "primitives": 0} for reason in (
+            "a clear of a part of the target", "depth is not cleared before the first draw", "nothing is written")]
+        self.assertEqual(self.lines([{"width": 4, "height": 3, "draws": [], "left_out": left_out}])[1:], [
+            "left out: 2 clears: of a part of the target",
+            "left out: 2 earlier pictures: depth is not cleared before the first draw",
+            "left out: 2 draws, 0 primitives: nothing is written"])
 
     def test_of_a_file_whose_frame_has_no_number(self):
         frame = {"width": 4, "height": 3, "draws": [], "left_out": []}
@@ -321,8 +331,8 @@ class Windows(unittest.TestCase):
 class States(unittest.TestCase):
     API = {"viewport": [0, 32, 64, -32], "depth_range": [0, 1], "scissor": None, "depth_test": True, "depth_write": True,
            "depth_function": "Less", "bias": 0, "slope_bias": 0, "bias_clamp": 0, "depth_format": "D24",
-           "depth_clamp": False, "cull": "NoCull", "front_ccw": True, "blend": None, "color_mask": 15, "stencil": None,
-           "alpha_to_coverage": False, "logic_operation": None}
+           "color_format": "R8G8B8A8_UNORM", "depth_clamp": False, "cull": "NoCull", "front_ccw": True, "blend": None,
+           "color_mask": 15, "stencil": None, "alpha_to_coverage": False, "logic_operation": None}
 
     def of(self, **changes):
         return state.state_of({**self.API, **changes}, 64, 32)
@@ -353,8 +363,9 @@ class States(unittest.TestCase):
         self.assertEqual(of(mix, replace)["blend"], {**mixed, "alpha": replaced})
         constant = of({**mix, "source": "FactorRGB"}, mix)["blend"]
         self.assertEqual((constant["source"], constant["constant"]), ("constant", [0, 0.5, 1, 1]))
-        with self.assertRaises(ValueError):
-            of({"source": "Src1Col", "destination": "Zero", "operation": "Add"}, replace)
+        for source in ("Src1Col", "InvSrc1Alpha"):
+            with self.assertRaisesRegex(ValueError, "^blending with two source colours$"):
+                of({"source": source, "destination": "Zero", "operation": "Add"}, replace)
 
     def test_logic_operations_replace_blending(self):
         mix = {"source": "SrcAlpha", "destination": "InvSrcAlpha", "operation": "Add"}
@@ -386,6 +397,16 @@ class States(unittest.TestCase):
             found = self.of(stencil=both, cull=cull)
             self.assertNotIn("stencil_back", found)
             self.assertEqual(found["stencil"]["depth_fail"], kept)
+
+
+class Views(unittest.TestCase):
+    def test_the_view_of_a_target_has_the_format(self):
+        attachments = [types.SimpleNamespace(imageResourceId=7, viewFormat="B8G8R8A8_SRGB"),
+                       types.SimpleNamespace(imageResourceId=9, viewFormat="D24")]
+        controller = mock.Mock()
+        controller.GetVulkanPipelineState().currentPass.framebuffer.attachments = attachments
+        self.assertEqual(api_state.color_view(controller, 7), "B8G8R8A8_SRGB")
+        self.assertIsNone(api_state.color_view(controller, 8))
 
 
 class Passes(unittest.TestCase):
@@ -420,6 +441,7 @@ class Passes(unittest.TestCase):
         self.assertEqual({event: (cleared.depth, cleared.stencil, cleared.parts)
                           for event, cleared in found[0].cleared_before.items()},
                          {5: (1.0, 8, False), 8: (None, None, True)})
+        self.assertEqual((found[0].cleared_first.depth, found[0].cleared_first.stencil), (1.0, 9))
 
     def test_names_of_render_passes(self):
         self.assertEqual(passes.clears_of("vkCmdBeginRenderPass(C=Clear, D=Clear)"), (True, True, False))
@@ -495,8 +517,8 @@ class Frames(unittest.TestCase):
     def frame(self, cleared, *events, **changes):
         before = np.zeros((32, 64, 4), np.float32)
         before[..., 3] = 0.2
-        before[0, 0] = 1
         pictures = {"size": (64, 32), "samples": 1, "later_draws": 0, "color_format": "R8G8B8A8_UNORM",
+                    "api": "OpenGL (zink)", "is_window": False, "cleared_first": passes.Clears(True, 1.0, 0),
                     "color": before, "color_before": before, "depth": np.ones((32, 64)), "depth_before": np.ones((32, 64)),
                     "stencil_before": np.zeros((32, 64), np.uint8), "passes": [], "cleared_before": cleared, **changes}
         draws = [{**self.DRAW, "event": event, "api": States.API,
@@ -514,11 +536,56 @@ class Frames(unittest.TestCase):
         self.assertEqual(sorted(found.left_out.values()), [(1, 0), (1, 0)])
 
     def test_what_the_targets_have_before_the_first_draw(self):
+        """Without clears, too, if it is the same everywhere."""
         stencil = np.full((32, 64), 3, np.uint8)
-        found = self.frame({}, 1, 2, stencil_before=stencil, depth_before=np.full((32, 64), 0.5))
+        found = self.frame({}, 1, 2, stencil_before=stencil, depth_before=np.full((32, 64), 0.5),
+                           cleared_first=passes.Clears())
+        self.assertEqual(found.left_out, {})
         self.assertEqual([draw.state for draw in found.draws], [{"clears_stencil": 3}, {}])
         self.assertAlmostEqual(found.background_alpha, 0.2)
         self.assertEqual((found.background, found.clear_depth), ([0, 0, 0], 0.5))
+
+    def left_out_before(self, *, color=True, depth=1.0, parts=False, **changes):
+        return sorted(self.frame({}, 1, cleared_first=passes.Clears(color, depth, None, parts), **changes).left_out)
+
+    def test_what_is_not_cleared_before_the_first_draw_is_left_out(self):
+        depth, color = np.ones((32, 64)), np.zeros((32, 64, 4), np.float32)
+        depth[3, 4], color[5, 6] = 0.5, 1
+        colour_is, depth_is = (f"{what} is not cleared before the first draw" for what in ("colour", "depth"))
+        part = "a clear of a part of the target"
+        for why, expected, changes in [
+                ("depth of the last frame", [depth_is], {"depth": None, "depth_before": depth}),
+                ("colour of the last frame", [colour_is], {"color": False, "color_before": color}),
+                ("both", [colour_is, depth_is], {"depth": None, "color": False, "depth_before": depth,
+                                                 "color_before": color}),
+                ("drawn by a pass before", [colour_is], {"color_before": color}),
+                ("a part is cleared after the whole", [part], {"parts": True, "color_before": color}),
+                ("a part only", [part, depth_is], {"depth": None, "parts": True, "depth_before": depth}),
+                ("a part to what is there", [], {"parts": True}),
+                ("a stencil that no draw tests", [], {"stencil_before": np.arange(2048).reshape(32, 64) & 255})]:
+            with self.subTest(why):
+                self.assertEqual(self.left_out_before(**changes), expected)
+
+    def test_depth_that_no_draw_tests_need_not_be_cleared(self):
+        depth = np.linspace(0, 1, 2048).reshape(32, 64)
+        with mock.patch.dict(States.API, depth_test=False):
+            self.assertEqual(self.left_out_before(depth=None, depth_before=depth), [])
+
+    def test_draws_with_another_encoding_are_counted(self):
+        with mock.patch.dict(States.API, color_format="R8G8B8A8_SRGB"):
+            self.assertEqual(self.frame({}, 1, color_format="R8G8B8A8_SRGB").left_out, {})
+            found = self.frame({}, 1, 2)
+            self.assertEqual(found.target, "unorm")
+            self.assertEqual(found.left_out, {"sRGB encoding differs from that of the largest draw": (2, 0)})
+            with mock.patch.dict(States.API, color_mask=0):
+                self.assertEqual(self.frame({}, 1).left_out, {})
+
+    def test_framebuffer_objects_of_opengl_are_stored_bottom_up(self):
+        zink = "OpenGL (zink)"
+        for api, is_window, height, expected in ((zink, False, 32, True), (zink, False, -32, False),
+                                                 (zink, True, 32, False), ("Vulkan", False, 32, False)):
+            with mock.patch.dict(States.API, viewport=[0, 0, 64, height]):
+                self.assertEqual(self.frame({}, 1, api=api, is_window=is_window).is_bottom_up, expected)
 
     def test_the_target_is_that_of_its_format(self):
         for color_format, target in (("R8G8B8A8_UNORM", "unorm"), ("B8G8R8A8_SRGB", "srgb"),

@@ -21,7 +21,6 @@ TEST(Technique, StreamingStatesFitTheirBudgets) {
   EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 46u);
   EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 96u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
-  EXPECT_EQ(parse_technique("z3:shape=32x2").framebuffer_bytes_per_pixel(), 36u);
   EXPECT_EQ(parse_technique("z3:shape=128x3").framebuffer_bytes_per_pixel(), 74u);
 }
 
@@ -102,7 +101,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"regional must be local or area", {"casav:regional=global"}},
       {"'slab' is there twice", {"casav:slab=visible,slab=full"}},
       {"z3 has no option 'layers'; it has shape and filter", {"z3:layers=3"}},
-      {"shape must be 32x2, 32x3 or 128x3", {"z3:shape=64x3"}},
+      {"shape must be 32x3 or 128x3", {"z3:shape=64x3"}},
       {"alpha has no option '1'; it has filter", {"alpha:1"}},
       {"reference has no option '64'; it has samples, set and filter", {"reference:64"}},
       {"deferred has no option ''; it has filter", {"deferred:"}},

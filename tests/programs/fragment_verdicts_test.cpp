@@ -3,6 +3,7 @@
 
 #include "stages/geometry/draw_plan.h"
 #include "tests/programs/program_traces.h"
+#include "tools/evaluate/captured_check.h"
 #include "tools/evaluate/draw_notes.h"
 
 namespace beampipe::fragment_verdicts_test {
@@ -145,6 +146,17 @@ struct Scene : ProgramTrace {
 
 constexpr glm::vec4 kGreen(0, 1, 0, 1), kYellow(1, 1, 0, 1);
 constexpr glm::vec3 kYellowColor(1, 1, 0), kGreenColor(0, 1, 0);
+
+// ---- The check of captured depths ----
+
+TEST(FragmentVerdicts, DepthsThatShadersWriteAreChecked) {
+  Scene scene;
+  scene.add(kDepth, 0.5f, {1, 0, 0.25f, 1});  // in place of 0.5, the depth of the window is 0.25
+  scene.trace.frames[0].capture.pictures.depth.assign(kSide * kSide, 0.25f);
+  const TextureSet textures(scene.trace);
+  const SampledDepths found = sampled_depths(scene.trace, scene.trace.frames[0], &textures);
+  EXPECT_EQ(check_captured(scene.trace.frames[0], found).equal_part(), 1.0);
+}
 
 // ---- Early and late tests ----
 

@@ -74,7 +74,7 @@ TEST_F(ProgramReaderTest, SaysWhereAndWhatIsWrong) {
         "\"R16G16B16A16_UNORM\", \"R32_SFLOAT\", \"R32G32B32A32_SFLOAT\", \"R32G32B32A32_UINT\", "
         "\"R32G32B32A32_SINT\", \"D32_SFLOAT\", found \"R8_SNORM\""},
        {"/program_samplers/0/wrap", "[\"repeat\"]", "expected an array of 3, found an array of 1"},
-       {"/frames/0/draws/0/program/program", "1", "expected an integer 0..0, found 1"},
+       {"/frames/0/draws/0/program/program", "1", "expected 0, found 1"},
        {"/frames/0/draws/0/program/images/0/base_level", "1", "expected one of the image's 1, found 1"},
        {"/frames/0/draws/0/program/images/0/layers", "7", "expected at most those of the image's 6, found 7"},
        {"/frames/0/draws/0/program/images/0/swizzle", "\"rgbx\"",

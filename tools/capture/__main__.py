@@ -102,10 +102,10 @@ def launch_of(arguments):
 
 
 def print_passes(pictures):
-    rows = [("target", "size", "draws", "triangles", "kept", "why not")]
+    rows = [("target", "size", "draws", "vertices", "kept", "why not")]
     for one in pictures["passes"]:
         rows.append((str(one["color"] or "-"), f"{one['size'][0]} x {one['size'][1]}", str(one["draws"]),
-                     str(one["triangles"]), "yes" if one["kept"] else "no", one["reason"]))
+                     str(one["vertices"]), "yes" if one["kept"] else "no", one["reason"]))
     widths = [max(len(row[k]) for row in rows) for k in range(6)]
     for row in rows:
         print("  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip())
@@ -128,23 +128,26 @@ def counted(number, noun):
 
 def summary(path, trace, size):
     """Lines that say what is in a trace; `size`: bytes of its files."""
+    import frame
     frames, meshes, first = trace["frames"], trace["meshes"], trace["source"].get("frame")
     if first is None:
         numbers = counted(len(frames), "frame")
     else:
         numbers = f"frame {first}" if len(frames) == 1 else f"frames {first} to {first + len(frames) - 1}"
-    draws = [draw for frame in frames for draw in frame["draws"]]
+    draws = [draw for each in frames for draw in each["draws"]]
     triangles = sum(meshes[draw["mesh"]]["indices"]["count"] // 3 for draw in draws)
     yield (f"{path}: {numbers}, {frames[0]['width']} x {frames[0]['height']} pixels, {counted(len(draws), 'draw')}, "
            f"{counted(triangles, 'triangle')}, {counted(len(meshes), 'mesh')}, "
            f"{counted(len(trace['programs']), 'fragment shader')}, "
-           f"{counted(len(trace['images']) + len(trace['program_images']), 'image')}, {size / 1e6:.1f} MB")
+           f"{counted(len(trace['program_images']), 'image')}, {size / 1e6:.1f} MB")
     left_out = {}
-    for one in (one for frame in frames for one in frame["left_out"]):
+    for one in (one for each in frames for one in each["left_out"]):
         draws, primitives = left_out.get(one["reason"], (0, 0))
         left_out[one["reason"]] = (draws + one["draws"], primitives + one["primitives"])
     for reason, (draws, primitives) in sorted(left_out.items()):
-        yield f"left out: {counted(draws, 'draw')}, {counted(primitives, 'primitive')}: {reason}"
+        what = counted(draws, frame.COUNTED.get(reason, "draw"))
+        yield (f"left out: {what}: {reason.removeprefix('a clear ')}" if reason in frame.COUNTED else
+               f"left out: {what}, {counted(primitives, 'primitive')}: {reason}")
 
 
 def make_trace(arguments, recording, extracted, folder, progress):
@@ -168,6 +171,9 @@ def make_trace(arguments, recording, extracted, folder, progress):
     print("\n".join(summary(arguments.output, trace, size)))
     for image in sorted(collection.unread):
         print(f"left out: {image}: no format that a trace has")
+    if frames[0].is_bottom_up:
+        print(f"target {extracted[0][0]['kept_color'] or '-'} is a framebuffer object of OpenGL: its rows are stored "
+              "bottom up, and the picture stands on its head")
     if later := frames[0].later_draws:
         print(f"after this pass: {counted(later, 'draw')}, for instance to filter the picture")
 

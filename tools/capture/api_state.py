@@ -12,7 +12,15 @@ def _equation(blend):
     return {"source": blend.source.name, "destination": blend.destination.name, "operation": blend.operation.name}
 
 
-def read_state(controller, depth_format):
+def color_view(controller, target):
+    """RenderDoc's format in which the current draw sees a colour target; None if it does not draw to it. Views decide
+    whether colours are encoded for sRGB: those of a program that turns GL_FRAMEBUFFER_SRGB on and off, for instance,
+    differ from the image's own format."""
+    attachments = controller.GetVulkanPipelineState().currentPass.framebuffer.attachments
+    return next((one.viewFormat for one in attachments if int(one.imageResourceId) == target), None)
+
+
+def read_state(controller, depth_format, color_format):
     """The state of the current draw; see state.state_of()."""
     pipe, vulkan = controller.GetPipelineState(), controller.GetVulkanPipelineState()
     raster, depth, biased = vulkan.rasterizer, vulkan.depthStencil, vulkan.rasterizer.depthBiasEnable
@@ -22,6 +30,7 @@ def read_state(controller, depth_format):
         "z_from_0": not vulkan.viewportScissor.depthNegativeOneToOne, "depth_clamp": not raster.depthClipEnable,
         "depth_test": depth.depthTestEnable, "depth_write": depth.depthWriteEnable,
         "depth_function": depth.depthFunction.name, "depth_format": depth_format,
+        "color_format": color_format,
         "bias": raster.depthBias if biased else 0, "slope_bias": raster.slopeScaledDepthBias if biased else 0,
         "bias_clamp": raster.depthBiasClamp, "discards_all": raster.rasterizerDiscardEnable,
         "viewport": [viewport.x, viewport.y, viewport.width, viewport.height],

@@ -33,7 +33,9 @@ def kept_pass(replay, target):
         return found, passes.choose(found, presented)
     chosen = [one for one in found if one.color == target]
     if not chosen:
-        raise ReplayError(f"no pass draws to target {target} (see --list)")
+        there = sorted({one.color for one in found if one.color})
+        raise ReplayError(f"no pass draws to target {target}; expected one of {', '.join(map(str, there)) or 'none'} "
+                          "(see --list)")
     return found, max(chosen, key=lambda one: one.vertices)
 
 
@@ -61,7 +63,8 @@ def read_draw(replay, programs, action, kept, folder):
     """What a draw is, as a dictionary; `left_out` says why it has no geometry."""
     controller = replay.controller
     controller.SetFrameEvent(action.event, False)
-    api = read_state(controller, replay.format_name(kept.depth))
+    color_format = replay.seen_format(kept.color)
+    api = read_state(controller, replay.format_name(kept.depth), color_format.name if color_format else "")
     draw = {"event": action.event, "api": api, "vertices": action.vertices, "left_out": None, "primitives": 0}
     if api["discards_all"]:
         return {**draw, "left_out": "rasterization is off"}
@@ -84,28 +87,33 @@ def read_draw(replay, programs, action, kept, folder):
 def take_pictures_before(replay, kept):
     """What the targets have before their first draw."""
     replay.controller.SetFrameEvent(kept.draws[0].event - 1, True)
-    color = replay.color_picture(kept.color) if kept.color else None
+    color = replay.color_picture(kept.color, replay.seen_format(kept.color)) if kept.color else None
     depth, stencil = replay.depth_and_stencil(kept.depth)
     return {"color_before": color, "depth_before": depth, "stencil_before": stencil}
 
 
 def take_pictures(replay, found, kept):
     """What the targets have after their last draw, and what all passes are."""
-    last = kept.draws[-1].event
+    # Some draws may see the target in another format, such as a menu that is not encoded for sRGB as the scene is.
+    most, last = max(kept.draws, key=lambda draw: draw.vertices).event, kept.draws[-1].event
+    replay.controller.SetFrameEvent(most, False)
+    color_format = replay.seen_format(kept.color)
     replay.controller.SetFrameEvent(last, True)
     size = replay.size_of(kept.color or kept.depth)
     drawn = [action.event for action in replay.actions() if action.is_draw]
     return {
         "api": replay.api, "driver": replay.driver, "filtering": FILTERING, "size": size,
         "samples": replay.samples_of(kept.color or kept.depth),
-        "color_format": replay.format_name(kept.color), "depth_format": replay.format_name(kept.depth),
-        "color": replay.color_picture(kept.color) if kept.color else None,
+        "color_format": color_format.name if color_format else "", "depth_format": replay.format_name(kept.depth),
+        "is_window": replay.is_of_a_window(kept.color),
+        "color": replay.color_picture(kept.color, color_format) if kept.color else None,
         "depth": replay.depth_and_stencil(kept.depth)[0],
         "kept": kept.name, "kept_color": kept.color, "cleared_before": kept.cleared_before,
+        "cleared_first": kept.cleared_first,
         "events": [draw.event for draw in kept.draws], "later_draws": sum(event > last for event in drawn),
         "passes": [{"name": one.name, "color": one.color, "size": replay.size_of(one.color or one.depth),
-                    "draws": len(one.draws), "triangles": one.vertices // 3, "kept": one is kept,
-                    "reason": "" if one is kept else passes.reason_left_out(one, kept)}
+                    "draws": len(one.draws), "vertices": one.vertices, "triangles": one.vertices // 3,
+                    "kept": one is kept, "reason": "" if one is kept else passes.reason_left_out(one, kept)}
                    for one in found if one.color or one.depth]}
 
 

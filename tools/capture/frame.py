@@ -16,6 +16,20 @@ def most_common(picture, otherwise):
     return values[counts.argmax()].item()
 
 
+_PART = "a clear of a part of the target"
+_OTHER_DEPTH = "a clear to another depth than before the first draw"
+_EARLIER = {what: f"{what} is not cleared before the first draw" for what in ("colour", "depth", "stencil")}
+_ENCODING = "sRGB encoding differs from that of the largest draw"  # the draws are kept
+# What other than draws a trace leaves out, by reason: the word that counts it.
+COUNTED = {_PART: "clear", _OTHER_DEPTH: "clear", **{reason: "earlier picture" for reason in _EARLIER.values()},
+           _ENCODING: "encoding"}
+
+
+def is_mixed(picture):
+    """Whether a picture has several values."""
+    return picture is not None and bool((picture != picture[:1, :1]).any())
+
+
 class Draw:
     """A draw with triangles."""
 
@@ -42,6 +56,9 @@ class Frame:
         self.background_alpha = most_common(None if pictures["color_before"] is None else
                                             np.clip(pictures["color_before"][..., 3], 0, 1), 1.0)
         self.depth, self.depth_before = pictures["depth"], pictures["depth_before"]
+        # In windows, Mesa's drivers turn OpenGL's rows around by viewports of negative height.
+        self.is_bottom_up = (pictures["api"].startswith("OpenGL") and not pictures["is_window"]
+                             and any(one["api"]["viewport"][3] > 0 for one in found[:1]))
         self.has_alpha = not pictures["color_format"] or bool(re.search(r"A\d", pictures["color_format"]))
         self.passes = pictures["passes"]
         self.draws, self.left_out = [], {}
@@ -72,7 +89,10 @@ class Frame:
             if owed.stencil is not None:
                 state["clears_stencil"] = owed.stencil
             owed = Clears()
+            if one["api"]["color_format"].endswith("SRGB") != (self.target == "srgb") and state.get("color_mask") != "":
+                self._leave_out(_ENCODING, 0)
             self.draws.append(Draw(one, state))
+        self._check_before(pictures)
 
     def _leave_out(self, reason, primitives):
         draws, count = self.left_out.get(reason, (0, 0))
@@ -80,9 +100,25 @@ class Frame:
 
     def _check_clears(self, clears):
         if clears.parts:
-            self._leave_out("a clear of a part of the target", 0)
+            self._leave_out(_PART, 0)
         if clears.depth is not None and abs(clears.depth - self.clear_depth) > 1e-6:
-            self._leave_out("a clear to another depth than before the first draw", 0)
+            self._leave_out(_OTHER_DEPTH, 0)
+
+    def _check_before(self, pictures):
+        """Of what the targets have before the first draw, a trace has one colour, depth and stencil."""
+        first, states = pictures["cleared_first"], [draw.state for draw in self.draws]
+        tests_depth = any(state.get("depth_test", True) for state in states)
+        tests_stencil = any("stencil" in state for state in states)
+        mixed = {what: is_cleared for what, picture, is_used, is_cleared in (
+            ("colour", self.color_before, True, first.color),
+            ("depth", self.depth_before, tests_depth, first.depth is not None),
+            ("stencil", pictures["stencil_before"], tests_stencil, first.stencil is not None))
+            if is_used and is_mixed(picture)}
+        if mixed and first.parts:
+            self._leave_out(_PART, 0)
+        for what, is_cleared in mixed.items():
+            if not (is_cleared and first.parts):  # else the clear of a part is why
+                self._leave_out(_EARLIER[what], 0)
 
     @property
     def clear_depth(self):

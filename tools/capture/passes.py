@@ -33,11 +33,11 @@ class Clears:
 
 
 class Pass:
-    """Draws with the same colour and depth target. `cleared_before`: by the events of draws, what was cleared right
-    before them, except for the first draw."""
+    """Draws with the same colour and depth target. `cleared_first`: what was cleared before the first draw.
+    `cleared_before`: by the events of the others, what was cleared right before them."""
 
-    def __init__(self, color, depth):
-        self.color, self.depth = color, depth
+    def __init__(self, color, depth, cleared_first):
+        self.color, self.depth, self.cleared_first = color, depth, cleared_first
         self.draws, self.cleared_before = [], {}
 
     @property
@@ -67,7 +67,7 @@ def group(actions):
         if not action.is_draw:
             continue
         if key not in open_passes:
-            open_passes[key] = Pass(*key)
+            open_passes[key] = Pass(*key, pending[action.depth])
             passes.append(open_passes[key])
         elif pending[action.depth].is_some:
             open_passes[key].cleared_before[action.event] = pending[action.depth]

@@ -14,6 +14,7 @@ from failure import Failure
 from redraw import ask_for_redraw
 
 REDRAW_AFTER = 2.0  # seconds without a new picture before the program's windows are asked to draw again
+COUNTING = 3.0  # seconds after the time limit within which a program's next picture says how many there were
 LAST_WORDS = 0.5  # seconds that are waited for the rest of what a program prints; what it has started may go on
 
 ENVIRONMENT = {"ENABLE_VULKAN_RENDERDOC_CAPTURE": "1", "MESA_LOADER_DRIVER_OVERRIDE": "zink",
@@ -82,7 +83,7 @@ class _Session:
         self.name = os.path.basename(words[0])
         self.result = Recording()
         self.control, self.triggered_at, self.windows, self.cycled = None, None, 0, False
-        self.presents, self.refused = False, ""
+        self.presents, self.refused, self.last_frame = False, "", None
 
     def run(self):
         """Waits until all frames are captured. Raises Failure."""
@@ -114,8 +115,22 @@ class _Session:
             raise kind(f"{self.name} {how} after {seconds:.1f} s, {self._before_what()}{self._last_words()}")
         if time.monotonic() > self.deadline:
             what = "frame captured" if self.presents else "picture shown"
-            raise Failure(f"{self.name}: no {what} within the time limit (see --timeout){self._last_words()}")
+            raise Failure(f"{self.name}: no {what} within the time limit ({self._reached()}see --timeout)"
+                          f"{self._last_words()}")
         self.progress.show(f"{self.name} runs" + (", capturing" if self.triggered_at else ""))
+
+    def _reached(self):
+        """Up to which frame a program came. RenderDoc numbers only frames that it captures."""
+        if not self.presents:
+            return "0 frames were presented; "
+        if self.wishes.frame is None or self.control is None:
+            return ""
+        self.control.TriggerCapture(1)
+        end = time.monotonic() + COUNTING
+        before = len(self.result.paths)
+        while len(self.result.paths) == before and self.control is not None and time.monotonic() < end:
+            self._receive()
+        return f"frame {self.last_frame} was reached; " if self.last_frame is not None else ""
 
     def _before_what(self):
         """What the program has ended without."""
@@ -157,6 +172,7 @@ class _Session:
         if message.type == kind.NewCapture:
             capture = message.newCapture
             self.result.paths.append(capture.path)
+            self.last_frame = capture.frameNumber
             self.result.frame = capture.frameNumber if self.result.frame is None else self.result.frame
         elif message.type == kind.RegisterAPI:
             use = message.apiUse

@@ -8,6 +8,7 @@ import renderdoc as rd
 
 import srgb
 import clears
+from api_state import color_view
 from images import Format, decode_color, decode_depth, decode_stencil, size_in_bytes, stored
 from passes import Action, Clears
 
@@ -100,6 +101,11 @@ class Replay:
     def format_named(self, f):
         return Format(f.Name(), f.type.name, f.compByteWidth, f.compCount, f.compType.name, f.BGRAOrder())
 
+    def seen_format(self, texture):
+        """Of a colour target, as the current draw sees it; None if it is none."""
+        view = color_view(self.controller, texture)
+        return self.format_named(view) if view is not None else self.format_of(texture) if texture else None
+
     def format_name(self, texture):
         return self.textures[texture].format.Name() if texture in self.textures else ""
 
@@ -114,9 +120,12 @@ class Replay:
         place = rd.Subresource(level, layer, sample)
         return bytes(self.controller.GetTextureData(self.textures[texture].resourceId, place))
 
-    def color_picture(self, texture):
-        """height x width x 4 float32 as stored, row 0 on top, the mean of the samples; None if it cannot be read."""
-        format = self.format_of(texture)
+    def is_of_a_window(self, texture):
+        return texture in self.textures and bool(self.textures[texture].creationFlags & rd.TextureCategory.SwapBuffer)
+
+    def color_picture(self, texture, format):
+        """height x width x 4 float32 of the codes that are stored, row 0 on top, the mean of the samples; None if it
+        cannot be read."""
         samples = [decode_color(self._bytes(texture, sample=sample), *self.size_of(texture), format)
                    for sample in range(self.samples_of(texture))]
         if samples[0] is None or len(samples) == 1:

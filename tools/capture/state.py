@@ -40,9 +40,8 @@ def stencil_of(face):
 
 
 def _equation_of(blend):
-    for factor in (blend["source"], blend["destination"]):
-        if factor not in FACTOR:
-            raise ValueError(f"blend factor {factor}")
+    if not {blend["source"], blend["destination"]} <= FACTOR.keys():
+        raise ValueError("blending with two source colours")
     return {"source": FACTOR[blend["source"]], "destination": FACTOR[blend["destination"]],
             "operation": OPERATION[blend["operation"]]}
 

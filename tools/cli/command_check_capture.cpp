@@ -1,10 +1,12 @@
 // beampipe check-capture: compares the depths and the pictures of a captured trace's frames with those of the program
 // itself.
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "tools/cli/commands.h"
 #include "tools/cli/run_arguments.h"
@@ -95,6 +97,8 @@ std::string text_of(const Technique& technique, const ColorCheck& check) {
   return line + text_of(check.draws);
 }
 
+bool is_captured(const Frame& frame) { return !frame.capture.pictures.depth.empty() || frame.capture.pictures.color; }
+
 // One frame's check.
 class FrameCheck {
  public:
@@ -172,6 +176,10 @@ void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
     require_writable_folder(arguments.output);
     output.emplace(arguments.output, gate);
   }
+  if (std::ranges::none_of(frames, [&](std::size_t i) { return is_captured(trace.frames[i]); }))
+    throw std::runtime_error(arguments.trace +
+                             ": expected the captured program's depths or picture, which `beampipe capture` records, "
+                             "found none");
   const TextureSet textures(trace);
   std::vector<DrawNote> notes = notes_of(trace, frames, textures.programs(), "");
   Json json = {{"beampipe_check_capture", 1}, {"trace", arguments.trace}, {"frames", Json::array()}};

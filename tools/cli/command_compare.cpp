@@ -77,8 +77,9 @@ void compare(const RunArguments& arguments, const CompareOptions& options, const
 
 }  // namespace
 
-void add_compare_command(CommandLine& line, InterruptGate& gate) {
+void add_compare_command(CommandLine& line, const std::string& command_line, InterruptGate& gate) {
   const auto arguments = std::make_shared<RunArguments>();
+  arguments->command_line = command_line;
   const auto options = std::make_shared<CompareOptions>();
   const auto pixels = std::make_shared<RecordedPixels>();
   Command command =

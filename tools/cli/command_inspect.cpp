@@ -14,6 +14,7 @@
 #include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/trace_view.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
@@ -75,6 +76,7 @@ std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, cons
   std::vector<PixelAddress> pixels;
   for (const std::string& text : arguments.pixels) pixels.push_back(parse_pixel("--pixel", text, frame));
   const TextureSet textures(trace, arguments.trace);
+  tell_notes(notes_of(trace, {arguments.frame}, textures.programs(), drawing_by_depth(techniques)));
   FrameInput run;
   run.threads = arguments.threads;
   run.memory.modelled = false;
@@ -104,7 +106,7 @@ void print_json(const std::vector<PixelInspection>& inspections, const InspectAr
 
 void run_inspection(const InspectArguments& arguments, InterruptGate& gate) {
   if (arguments.pixels.empty() == (arguments.worst == 0))
-    throw UsageError("expected --pixel X,Y or --worst N (see beampipe inspect --help)");
+    throw UsageError("expected either --pixel X,Y or --worst N (see beampipe inspect --help)");
   const std::vector<Technique> techniques = parse_techniques(arguments.specs);
   for (const Technique& technique : techniques) require_inspectable(technique);
   const bool is_svg = is_picture(arguments.output, ".svg"), is_page = is_picture(arguments.output, ".html");

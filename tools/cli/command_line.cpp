@@ -111,7 +111,8 @@ Option& Option::bytes(std::uint64_t low, std::uint64_t high) {
   option_->transform(CLI::AsSizeValue(false).description(""));
   const auto refusal = [low, high](const std::string& found) -> std::string {
     if (CLI::Range(low, high)(found).empty()) return "";
-    return "expected " + std::to_string(low) + " to " + std::to_string(high) + " bytes, such as 64KB, found " + found;
+    return "expected " + std::to_string(low) + " to " + std::to_string(high) + " bytes, such as " +
+           (low <= 65536 ? "64KB" : "512MB") + ", found " + found;
   };
   option_->check(CLI::Validator(refusal, ""))->type_name("SIZE");
   return *this;

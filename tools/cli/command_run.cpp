@@ -64,8 +64,9 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
 
 }  // namespace
 
-void add_run_command(CommandLine& line, InterruptGate& gate) {
+void add_run_command(CommandLine& line, const std::string& command_line, InterruptGate& gate) {
   const auto arguments = std::make_shared<RunArguments>();
+  arguments->command_line = command_line;
   const auto trace_arguments = std::make_shared<MemoryTraceArguments>();
   Command command = line.add_command("run", "Render a trace: pictures, what every stage cost, times");
   add_run_arguments(command, *arguments);

@@ -29,8 +29,18 @@ void add_schema_command(CommandLine& line) {
   std::vector<std::string> names;
   for (const NamedSchema& each : kSchemas) names.push_back(each.name);
   command.add("KIND", *name, "of which files").required().one_of(names);
+  const auto built_in = std::make_shared<std::string>();
+  command
+      .add("--built-in", *built_in,
+           "with hardware: print this description, which is built in, to start one of your own from")
+      .one_of(hardware_names());
   command.footer("Describes every key, for editors and other programs that know JSON Schema.");
-  command.set_work([name] {
+  command.set_work([name, built_in] {
+    if (!built_in->empty()) {
+      if (*name != "hardware") throw UsageError("--built-in: expected the kind hardware, found " + *name);
+      std::cout << json_text(read_hardware(*built_in).json);
+      return;
+    }
     for (const auto& [each, schema] : kSchemas)
       if (*name == each) std::cout << json_text(schema());
   });

@@ -10,8 +10,9 @@
 
 namespace beampipe {
 
-void add_run_command(CommandLine& line, InterruptGate& gate);
-void add_compare_command(CommandLine& line, InterruptGate& gate);
+// `command_line`: the words that the user gave, as one text.
+void add_run_command(CommandLine& line, const std::string& command_line, InterruptGate& gate);
+void add_compare_command(CommandLine& line, const std::string& command_line, InterruptGate& gate);
 void add_report_command(CommandLine& line, InterruptGate& gate);
 void add_plot_command(CommandLine& line, InterruptGate& gate);
 void add_figure_command(CommandLine& line);

@@ -61,7 +61,7 @@ MemoryTrace::MemoryTrace(const MemoryTraceArguments& arguments, const RunArgumen
                      std::to_string(plan.techniques.size()) + ", frames: " + std::to_string(plan.frames.size()));
   if (!plan.options.memory.modelled)
     throw UsageError(option + ": without a model of memory there are no requests; leave out --no-memory-model");
-  if (plan.techniques.front().spec == kReferenceSpec)
+  if (is_reference(plan.techniques.front().spec))
     throw UsageError(option + ": the reference makes no requests; name another technique");
   if (run.resume) throw UsageError(option + ": a resumed run does not draw its frames again; leave out --resume");
   file_ = file_beside_output(option, arguments.file, run);

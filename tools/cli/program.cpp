@@ -12,6 +12,7 @@
 #include "pipeline/technique.h"
 #include "tools/cli/commands.h"
 #include "tools/evaluate/results.h"
+#include "tools/files/shell_word.h"
 
 namespace beampipe {
 namespace {
@@ -52,11 +53,19 @@ void keep_freed_memory() {
   mallopt(M_TRIM_THRESHOLD, kLargest);
 }
 
+std::string command_text(int argc, char** argv, const std::vector<std::string>& start) {
+  std::string text = start.empty() ? "beampipe" : "";
+  for (const std::string& word : start) text += (text.empty() ? "" : " ") + short_shell_word(word);
+  for (int i = 1; i < argc; ++i) text += " " + short_shell_word(argv[i]);
+  return text;
+}
+
 int run(int argc, char** argv, const std::vector<std::string>& start, InterruptGate& gate) {
   keep_freed_memory();
+  const std::string command_line = command_text(argc, argv, start);
   CommandLine line("beampipe", program_version(), kDescription, kExamples);
-  add_run_command(line, gate);
-  add_compare_command(line, gate);
+  add_run_command(line, command_line, gate);
+  add_compare_command(line, command_line, gate);
   add_report_command(line, gate);
   add_plot_command(line, gate);
   add_figure_command(line);

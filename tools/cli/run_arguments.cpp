@@ -129,6 +129,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   require_trace(arguments);
   RunPlan plan;
   plan.trace_file = arguments.trace;
+  plan.command_line = arguments.command_line;
   plan.techniques = parse_techniques(arguments.specs);
   plan.repeat = arguments.repeat;
   plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -143,7 +144,8 @@ RunPlan make_plan(const RunArguments& arguments) {
                        ": expected techniques that work without bins, such as msaa:8, because " + plan.hardware.named +
                        " has none");
   for (const Technique& technique : plan.techniques)
-    if (const std::string reason = no_room_text(plan.options.memory, technique.framebuffer); !reason.empty())
+    if (const std::string reason = no_room_text(plan.options.memory, technique.framebuffer);
+        !reason.empty() && !is_reference(technique.spec))
       std::cerr << "beampipe: note: " << technique.spec << ": pixels in memory: " << reason << "\n";
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.tev.empty()) plan.viewer = connect_tev(arguments.tev);

@@ -107,7 +107,9 @@ Form<std::map<std::string, RateRange>> energy_form() {
                                   "Where each of these is from, or that it is a choice, by its name."))
       .check([](const JsonCursor& at, const Energies& energies) {
         for (const auto& [name, range] : energies)
-          if (range.low > range.high) at["picojoules"][name].fail("the lowest before the highest");
+          if (range.low > range.high)
+            at["picojoules"][name].fail("the lowest before the highest",
+                                        Json(range.low).dump() + " to " + Json(range.high).dump());
       });
 }
 
@@ -132,7 +134,7 @@ Form<Hardware> hardware_form() {
   return ObjectForm<Hardware>()
       .add(form::unused<Hardware>("beampipe_hardware", true, form::version(5), "The version of this format."))
       .required("name", &Hardware::name, form::text(), "What it is, for people.")
-      .required("clock_mhz", &Hardware::clock_mhz, rate, "The clock, in MHz.")
+      .required("clock_mhz", &Hardware::clock_mhz, form::number(1, 100'000), "The clock, in MHz.")
       .required("memory_system", &Hardware::memory, memory_system_form(),
                 "Caches, memory on chip and cores, as far as they differ from those of a Titan V.")
       .required("rates", &Hardware::rates, form::record(hardware_rates(), true, rate), "What the units do per clock.")

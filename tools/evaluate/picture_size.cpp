@@ -31,10 +31,13 @@ void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureS
                            wanted.height > 0 ? wanted.height : in_proportion(wanted.width, frame.height, frame.width)};
     if (size == PictureSize{frame.width, frame.height}) continue;
     const bool same_ratio = std::uint64_t{frame.width} * size.height == std::uint64_t{frame.height} * size.width;
-    if (trace.source || has_viewport(frame) || (!frame.camera && !same_ratio))
+    if (trace.source)
+      throw std::runtime_error(name + ": a captured frame stays " + text_of({frame.width, frame.height}) +
+                               " pixels, expected no other size");
+    if (has_viewport(frame) || (!frame.camera && !same_ratio))
       throw std::runtime_error(name + ": cannot be " + text_of(size) +
                                " pixels: expected frames that name a camera, or have this ratio of width to height, "
-                               "without viewports and not captured");
+                               "without viewports");
     frame.width = size.width, frame.height = size.height;
     if (frame.camera) set_camera(frame, Camera(*frame.camera));
   }

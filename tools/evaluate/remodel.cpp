@@ -8,6 +8,8 @@ namespace {
 
 const std::string kFile = "report.json";
 
+}  // namespace
+
 MemoryParameters memory_of(const Json& report) {
   Json named = Json::object();
   MemoryParameters memory;
@@ -17,6 +19,8 @@ MemoryParameters memory_of(const Json& report) {
   memory.modelled = report.at("memory_system").at("modelled").get<bool>();
   return memory;
 }
+
+namespace {
 
 Hardware hardware_of(const Json& report) {
   Hardware hardware = parse_hardware(report.at("hardware"), kFile);

@@ -14,6 +14,9 @@ struct OtherMemory : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The memory system of report.json. Throws JsonError or TraceError if `report` is something else.
+MemoryParameters memory_of(const Json& report);
+
 // Of report.json: trace, what made it, memory system, hardware, and the stages, buffers and bins of every technique's
 // frames. The hardware is `other`, or, if that is null, the report's own. Options of the run that changed the memory
 // system hold for `other` too. Throws OtherMemory if the rest of its memory system is another one, and JsonError or

@@ -225,6 +225,7 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
   Report report{.trace = plan.trace_file,
                 .version = program_version(),
                 .simd = simd_target(),
+                .command_line = plan.command_line,
                 .threads = plan.options.threads,
                 .memory = plan.options.memory,
                 .hardware = plan.hardware,

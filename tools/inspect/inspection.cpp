@@ -70,6 +70,10 @@ std::vector<PixelHistory> observed(const Technique& technique, const Trace& trac
 
 }  // namespace
 
+bool has_owners(const PixelHistory& history) {
+  return std::ranges::any_of(history.owners, [](std::uint32_t owner) { return owner != kNobody; });
+}
+
 std::vector<std::string> inspectable_names() {
   std::vector<std::string> names;
   for (const TechniqueKind& kind : technique_kinds())
@@ -80,8 +84,9 @@ std::vector<std::string> inspectable_names() {
 
 void require_inspectable(const Technique& technique) {
   if (technique.is_observable) return;
-  const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
-                                                  : "it is what the others are compared with";
+  const std::string why = technique.keeps_history        ? "its pixels depend on earlier frames and on their neighbours"
+                          : is_reference(technique.spec) ? "it is what the others are compared with"
+                                                         : "it does not record what it decides";
   throw SpecError("technique '" + technique.spec + "' cannot be inspected: expected " + list_of(inspectable_names()) +
                   "; " + why);
 }

@@ -39,6 +39,9 @@ struct PixelInspection {
   std::vector<double> causes;              // of the error, or of the visibility error, in the order of kErrorCauses
 };
 
+// Does anybody own a position in the end? Where draws keep the API's order, nobody does.
+bool has_owners(const PixelHistory& history);
+
 // The techniques that can be inspected, in the order of technique_kinds().
 std::vector<std::string> inspectable_names();
 

@@ -121,9 +121,12 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
   const auto length_of = [&](double part) {
     return largest > 0 ? kBarWidth * std::clamp(part / largest, 0.0, 1.0) : 0.0;
   };
+  const bool has_truth =
+      std::ranges::any_of(surfaces, [](const InspectedSurface& surface) { return surface.truth.has_value(); });
   std::string svg =
       text_at(kTextLeft, top, "surface", "class=\"dim\"") +
-      text_at(bars, top, format("weight (bar), reference (line); full width %.3g", largest), "class=\"dim\"");
+      text_at(bars, top, format("weight (bar)%s; full width %.3g", has_truth ? ", reference (line)" : "", largest),
+              "class=\"dim\"");
   for (std::size_t i = 0; i < std::min(surfaces.size(), kMostSurfaces); ++i) {
     const InspectedSurface& surface = surfaces[i];
     const double y = top + 12 + kRow * static_cast<double>(i);
@@ -174,11 +177,12 @@ std::string panel_svg(const PixelInspection& inspection, const std::string& trac
   std::string svg = text_at(kMargin, top + 24,
                             format("Pixel %u,%u with %s", history.at.x, history.at.y, inspection.technique.c_str()),
                             "class=\"title\"");
-  svg += text_at(
-      kMargin, top + 46,
-      trace + format(", frame %zu. %zu triangles, %zu %s: dots in the colour of the owner, or empty.", inspection.frame,
-                     history.fragments.size(), history.positions.size(), history.has_samples ? "samples" : "positions"),
-      "class=\"dim\"");
+  svg +=
+      text_at(kMargin, top + 46,
+              trace + format(", frame %zu. %zu triangles, %zu %s: dots%s.", inspection.frame, history.fragments.size(),
+                             history.positions.size(), history.has_samples ? "samples" : "positions",
+                             !has_owners(history) ? "" : " in the colour of the owner, or empty"),
+              "class=\"dim\"");
   top += kHead;
   svg += pixel_picture(inspection, colors, top, panel);
   svg += weight_bars(surfaces, inspection, colors, top + 10);

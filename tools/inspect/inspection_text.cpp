@@ -199,12 +199,10 @@ std::string fragments_text(const PixelInspection& inspection) {
       ++left_out[fate_text(each.fate)];
       continue;
     }
-    const bool has_owners =
-        std::any_of(history.owners.begin(), history.owners.end(), [](std::uint32_t owner) { return owner != kNobody; });
     text += format("  %4zu %9u  %-20s %9.5f %10.6f %10.6f %7td %6s  ", i, each.triangle,
                    cut(inspection.draw_names[i], 20).c_str(), each.area, each.nearest, each.farthest,
                    std::count(each.mask.begin(), each.mask.end(), true),
-                   has_owners ? std::to_string(owned[i]).c_str() : "");
+                   has_owners(history) ? std::to_string(owned[i]).c_str() : "");
     text += fate_text(each.fate) + (each.is_front ? "\n" : ", back face\n");
     if (const std::string moves = moves_text(each, history); !moves.empty()) text += put_line("         " + moves, 11);
   }
@@ -220,8 +218,7 @@ std::string masks_text(const PixelInspection& inspection, bool unicode) {
   constexpr std::size_t kMost = 24;
   const PixelHistory& history = inspection.history;
   std::vector<TitledPicture> pictures;
-  if (std::any_of(history.owners.begin(), history.owners.end(), [](std::uint32_t owner) { return owner != kNobody; }))
-    pictures.push_back({"owners", owner_picture(history)});
+  if (has_owners(history)) pictures.push_back({"owners", owner_picture(history)});
   std::size_t left_out = 0;
   for (std::uint32_t i = 0; i < history.fragments.size(); ++i) {
     const std::vector<bool>& mask = history.fragments[i].mask;
@@ -234,8 +231,10 @@ std::string masks_text(const PixelInspection& inspection, bool unicode) {
                         mask_picture(history, mask, unicode)});
   }
   if (pictures.empty()) return "";
-  std::string text = history.has_samples ? "Samples: who has them at the end, and what each fragment covers\n"
-                                         : "Positions: who owns them at the end, and what each fragment covers\n";
+  std::string text = history.has_samples ? "Samples: " : "Positions: ";
+  if (has_owners(history))
+    text += history.has_samples ? "who has them at the end, and " : "who owns them at the end, and ";
+  text += "what each fragment covers\n";
   text += pictures_text(pictures);
   if (left_out > 0) text += format("  %zu more masks are in --json.\n\n", left_out);
   return text;

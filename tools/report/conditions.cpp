@@ -5,8 +5,6 @@
 #include <set>
 
 #include "tools/evaluate/hardware.h"
-#include "tools/evaluate/memory_system.h"
-#include "tools/files/shell_word.h"
 
 namespace beampipe {
 namespace {
@@ -83,49 +81,7 @@ std::string shading_text(const Json& hardware) {
          " for lights, beside what the trace's own take";
 }
 
-// The option that names the hardware, or nothing for the default one.
-std::string hardware_option(const Json& report) {
-  const std::string named = report.value("hardware_named", std::string());
-  return named.empty() || named == hardware_names().front() ? "" : " --hardware " + short_shell_word(named);
-}
-
-// The options that changed the hardware's memory system.
-std::string memory_options(const Json& report) {
-  const Json* const hardware = report.find("hardware");
-  if (!hardware) return "";
-  const Json& memory = report.at("memory_system");
-  std::string options;
-  if (!memory.at("modelled").get<bool>()) options += " --no-memory-model";
-  Json described = parameters_json({});
-  for (const auto& [key, value] : hardware->at("memory_system").at("parameters").members()) described[key] = value;
-  const auto changed = [&](const char* key) { return memory.at(key) != described.at(key); };
-  if (changed("compression")) options += " --no-compression";
-  if (changed("framebuffer")) options += " --framebuffer " + memory.at("framebuffer").get<std::string>();
-  if (changed("on_chip_bytes")) options += " --on-chip-memory " + memory.at("on_chip_bytes").dump();
-  return options;
-}
-
 }  // namespace
-
-std::string command_of(const ReportFile& report) {
-  const Json maker = report.json.value("made_by", Json::object());
-  if (!maker.contains("command")) return "";
-  std::string text = "beampipe " + maker.at("command").get<std::string>() + " " +
-                     short_shell_word(report.json.at("trace").get<std::string>()) + " -t";
-  for (const Json& spec : maker.at("techniques").elements()) text += " " + short_shell_word(spec.get<std::string>());
-  const std::size_t rendered = report.json.at("results").at(0).at("frames").size();
-  if (report.json.value("trace_frames", rendered) > rendered)
-    text += " --frames " + maker.at("frames").get<std::string>();
-  if (maker.at("repeat") != 1) text += " --repeat " + maker.at("repeat").dump();
-  text += hardware_option(report.json) + memory_options(report.json) + maker.value("shading_options", std::string());
-  std::string rungs;
-  const Json ladder = maker.value("ladder", Json::array());
-  for (const Json& rung : ladder.elements()) rungs += (rungs.empty() ? "" : ",") + rung.dump();
-  if (!rungs.empty()) text += " --ladder " + rungs;
-  for (const char* flag : {"causes", "orders"})
-    if (maker.value(flag, false)) text += std::string(" --") + flag;
-  return text;
-}
 
 Json report_conditions(const ReportFile& report) {
   Json conditions = Json::array();
@@ -139,7 +95,7 @@ Json report_conditions(const ReportFile& report) {
                      range_of(all, "lights", "light"));
   }
   add("trace", report.json.at("trace").get<std::string>());
-  add("command", command_of(report));
+  add("command", report.json.value("command_line", std::string()));
   if (const Json* const hardware = report.json.find("hardware")) {
     add("hardware", hardware_text(report.json));
     add("shading", shading_text(*hardware));

@@ -12,8 +12,4 @@ namespace beampipe {
 // trace asks for and no technique does. What an older report does not have is left out. Throws JsonError.
 Json report_conditions(const ReportFile& report);
 
-// The command that makes such a report, without the output folder: "beampipe run fence.json -t beam msaa:8". A file
-// whose name the report does not have is FILE. Empty if the report does not say what made it.
-std::string command_of(const ReportFile& report);
-
 }  // namespace beampipe

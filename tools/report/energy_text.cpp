@@ -80,7 +80,7 @@ std::vector<EnergyRow> energy_rows(const Report& report, const std::string& over
   std::vector<EnergyRow> rows;
   for (const TechniqueReport& result : report.results)
     for (const Implementation& implementation : report.hardware.implementations)
-      if (result.technique != kReferenceSpec && !result.frames.empty())
+      if (!is_reference(result.technique) && !result.frames.empty())
         rows.push_back(energy_row(report, result, implementation, of_over));
   return rows;
 }

@@ -92,7 +92,7 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
                  .height = kHeight * (kTop - kBottom),
                  .label_height = kLabelHeight,
                  .point_radius = kPointRadius};
-  std::vector<std::string> labels;
+  std::vector<std::string> labels, colors;  // lines that lie close are told apart by colour
   const auto pixel_of = [&](const PlotPoint& point) {
     return PixelPoint{x.place(point.x) * task.width, y.place(point.y) * task.height};
   };
@@ -104,6 +104,7 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
       task.points.push_back(pixel_of(point));
       task.label_widths.push_back(kCharacterWidth * static_cast<double>(point.label.size()));
       labels.push_back(point.label);
+      colors.push_back(series.line ? series.color : "#404040");
     }
   }
   const std::vector<PixelPoint> centers = place_labels(task);
@@ -116,7 +117,7 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
       script << "set arrow from graph " << point.x / task.width << "," << point.y / task.height << " to graph "
              << (label.x + std::copysign(std::abs(label.x - point.x) - dx, point.x - label.x)) / task.width << ","
              << (label.y + std::copysign(std::abs(label.y - point.y) - dy, point.y - label.y)) / task.height
-             << " nohead back linecolor '#a0a0a0'\n";
+             << " nohead back linecolor " << quoted(colors[i]) << "\n";
     }
     // A label to the right (left) of its point starts (ends) there, however wide the font makes it.
     const int side = label.x > point.x + 1 ? 1 : label.x < point.x - 1 ? -1 : 0;
@@ -125,7 +126,7 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
            << (side > 0   ? "left"
                : side < 0 ? "right"
                           : "center")
-           << "\n";
+           << " textcolor rgb " << quoted(colors[i]) << "\n";
   }
 }
 

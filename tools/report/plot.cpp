@@ -29,15 +29,19 @@ PlotSeries& series_named(ScatterPlot& plot, const std::vector<ReportFile>& repor
   return plot.series.back();
 }
 
-// All of msaa without options are one series, and each other technique is one of its own.
-void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& spec, PlotPoint point) {
+void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& series,
+               const std::string& spec, PlotPoint point) {
   if (point.x > 0 && point.y > 0) {
-    const std::string name = is_msaa(spec) && spec.find(',') == spec.npos ? kMsaaName : spec;
-    series_named(plot, reports, name, spec).points.push_back(std::move(point));
+    series_named(plot, reports, series, spec).points.push_back(std::move(point));
   } else {
     plot.notes.push_back(spec + " is not drawn: " + (point.x > 0 ? plot.y_label : plot.x_label) +
                          " is 0, which a logarithmic axis cannot show");
   }
+}
+
+// All of msaa without options are one series, and each other technique is one of its own.
+void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& spec, PlotPoint point) {
+  add_point(plot, reports, is_msaa(spec) && spec.find(',') == spec.npos ? kMsaaName : spec, spec, std::move(point));
 }
 
 PlotSeries msaa_line() { return {kMsaaName, technique_color({}, kMsaaName), {}, true}; }
@@ -49,7 +53,7 @@ PlotPoint::Bound bound_of(const EquivalentMsaa& emr) {
 
 std::string scenes_text(const std::vector<ReportFile>& reports) {
   if (reports.size() == 1) return reports.front().scene;
-  return "geometric mean over " + std::to_string(reports.size()) + " scenes";
+  return "geometric mean over " + std::to_string(reports.size()) + " runs";
 }
 
 // The rungs of the longest ladder.
@@ -98,7 +102,7 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
                    .series = {msaa_line()}};
   for (const LadderRung& rung : longest_ladder(reports)) {
     const std::string spec = msaa_spec(rung.samples);
-    const double bytes = parse_technique(spec).framebuffer_bytes_per_pixel();
+    const double bytes = parse_technique(spec).framebuffer_bytes_per_pixel(reports.front().memory);
     add_point(plot, reports, spec, {bytes, static_cast<double>(rung.samples), spec});
   }
   bool compared = false;
@@ -123,8 +127,8 @@ ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
     const std::string series = is_msaa(summary.spec) ? kMsaaName : split_pool(summary.spec).first;
-    series_named(plot, reports, series, summary.spec)
-        .points.push_back({summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
+    add_point(plot, reports, series, summary.spec,
+              {summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }
   if (plot.series.size() == 1 && plot.series.front().points.empty()) throw_not_compared(reports);
   for (PlotSeries& series : plot.series)

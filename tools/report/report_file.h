@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/memory/parameters.h"
 #include "tools/evaluate/metrics.h"
 #include "traces/files/json.h"
 
@@ -55,10 +56,11 @@ struct TechniqueSummary {
 
 struct ReportFile {
   std::filesystem::path folder;
-  std::string scene;                         // the name of the trace's file, without folder and extension
-  Json json;                                 // the whole file
-  std::vector<TechniqueSummary> techniques;  // all techniques except `reference`
-  std::vector<LadderRung> msaa_ladder;       // empty in reports of `run`
+  std::string scene = {};                         // the name of the trace's file, without folder and extension
+  Json json = {};                                 // the whole file
+  MemoryParameters memory = {};                   // of the modelled hardware
+  std::vector<TechniqueSummary> techniques = {};  // all techniques except `reference`
+  std::vector<LadderRung> msaa_ladder = {};       // empty in reports of `run`
 };
 
 // The equivalent rate of one element of the report's "results", or of its "visibility". None if it has none. Throws

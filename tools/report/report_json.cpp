@@ -184,6 +184,7 @@ ObjectForm<Report> head_form() {
       .written("trace", &Report::trace, form::text(), "The trace, as the user named it.")
       .written("version", &Report::version, form::text(), "Of the program.")
       .written("simd", &Report::simd, form::text(), "The instruction set that was used.")
+      .written("command_line", form::filled(&Report::command_line), form::text(), "The command that made it.")
       .written("threads", &Report::threads, form::count(1), "That worked at once.")
       .written("memory_system", &Report::memory, memory_form(), "The modelled memory system.")
       .written(

@@ -115,7 +115,7 @@ std::string causes_text(const Report& report) {
   for (const TechniqueReport& result : report.results) {
     if (result.causes.empty()) continue;
     std::vector<std::string>& row = rows.emplace_back(std::vector{result.technique});
-    rows[0] = {"share of the mean square error"};
+    rows[0] = {"share of the mean square error of visibility"};
     for (const auto& [cause, part] : result.causes) {
       rows[0].push_back(cause);
       row.push_back(format("%.1f %%", 100 * part));

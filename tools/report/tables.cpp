@@ -86,7 +86,9 @@ const std::vector<Source> kTechniqueColumns = {
       kMemory},
      "/peak_bytes_per_pixel"},
     {{"msaa_bytes_per_pixel", "as MSAA", "bytes per pixel",
-      "Size per pixel of MSAA with the same error: EMR times the bytes of msaa:1.", kMemory},
+      "Size in memory per pixel of MSAA with the same error: EMR times the bytes of msaa:1, or less if samples are on "
+      "chip.",
+      kMemory},
      "/msaa_bytes_per_pixel"},
     {{"a_buffer_peak_bytes", "A-buffer", "bytes",
       "The largest size of the A-buffer at any time of a frame; 0 if there is none.", kMemory},
@@ -320,7 +322,7 @@ std::optional<double> mean_of_frames(const Json& result, std::string_view key) {
 // unevenly bins fill cores, and DRAM bytes of geometry.
 void add_room(const ReportFile& report, const Json& result, Json& record) {
   const Json* const memory = report.json.find("memory_system");
-  if (!memory || !memory->at("modelled").get<bool>() || result.at("technique") == kReferenceSpec) return;
+  if (!memory || !memory->at("modelled").get<bool>() || is_reference(result.at("technique").get<std::string>())) return;
   MemoryParameters parameters;
   parameters.on_chip_bytes = memory->at("on_chip_bytes").get<std::uint32_t>();
   parameters.bins_per_core = memory->at("bins_per_core").get<std::uint32_t>();
@@ -348,7 +350,11 @@ void add_room(const ReportFile& report, const Json& result, Json& record) {
 }
 
 std::vector<Json> technique_records(const ReportFile& report) {
-  const double msaa_bytes = parse_technique(msaa_spec(1)).framebuffer_bytes_per_pixel();
+  // Of msaa:1, and of each sample more: nothing if the samples are on chip.
+  const auto bytes_of = [&](std::uint32_t samples) {
+    return static_cast<double>(parse_technique(msaa_spec(samples)).framebuffer_bytes_per_pixel(report.memory));
+  };
+  const double msaa_bytes = bytes_of(1), sample_bytes = bytes_of(2) - msaa_bytes;
   std::vector<Json> records;
   for (const Json& result : report.json.at("results").elements()) {
     Json record = result;
@@ -375,7 +381,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
       if (const auto emr = read_emr(*visibility)) record["visibility"]["emr_bound"] = bound_text(*emr);
     if (summary.emr) {
       record["emr_bound"] = bound_text(*summary.emr);
-      record["msaa_bytes_per_pixel"] = summary.emr->samples * msaa_bytes;
+      record["msaa_bytes_per_pixel"] = msaa_bytes + (summary.emr->samples - 1) * sample_bytes;
     }
     records.push_back(std::move(record));
   }

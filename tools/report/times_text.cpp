@@ -47,7 +47,7 @@ struct Row {
   const TechniqueReport& result;
   const Implementation& implementation;
   ModelledTime time = {};
-  BinSpread spread = {};                           // the means over the frames
+  BinSpread spread = {};                                // the means over the frames
   std::map<std::string_view, Interval> intervals = {};  // by the key of the time
   std::optional<Quotient> quotient = {};
 };
@@ -190,6 +190,15 @@ std::string stages_text(const std::vector<Row>& all) {
   return "\nstages of at least 1 % of the time in turn\n" + align_columns(joined_rows(rows, 1), {0, 1, 2, 4});
 }
 
+// What wrong units would change, and how much the intervals know.
+std::string title_text(const Hardware& hardware) {
+  return "\nmodelled ms on " + hardware.label + " (" + hardware.name + "): " +
+         format("%u cores at %g MHz, %g KiB on chip each, DRAM %g GB/s; %zu of %zu rates have a range\n",
+                hardware.memory.cores, hardware.clock_mhz, static_cast<double>(hardware.memory.on_chip_bytes) / 1024.0,
+                std::round(hardware.rates.at("dram_bytes_per_clk") * hardware.clock_mhz / 1000), hardware.ranges.size(),
+                hardware.rates.size());
+}
+
 }  // namespace
 
 std::string times_text(const Report& report, const TimesOptions& options) {
@@ -204,9 +213,8 @@ std::string times_text(const Report& report, const TimesOptions& options) {
                     ratio_text(row.spread.busiest_core), room_text(report, row.result)});
     if (!options.over.empty()) rows.back().push_back(row.quotient ? quotient_text(*row.quotient) : "");
   }
-  const std::string title = "\nmodelled ms on " + report.hardware.label + " (" + report.hardware.name + ")\n";
-  return title + align_columns(joined_rows(rows, 1), {0, 1, 6, 8, 9}) + (options.stages ? stages_text(all) : "") +
-         (options.sensitivity ? sensitivity_text(all, options.over) : "");
+  return title_text(report.hardware) + align_columns(joined_rows(rows, 1), {0, 1, 6, 8, 9}) +
+         (options.stages ? stages_text(all) : "") + (options.sensitivity ? sensitivity_text(all, options.over) : "");
 }
 
 Json times_json(const Report& report, const TimesOptions& options) {

@@ -225,8 +225,12 @@ class PlanReader {
 
   std::size_t read_technique(const JsonCursor& at) {
     const std::string spec = at.string();
-    if (is_reference(parse_technique(spec).spec))
-      at.fail("a technique other than the reference, which costs nothing on hardware");
+    try {
+      parse_technique(spec);
+    } catch (const SpecError& error) {
+      throw SpecError(at.where() + ": " + error.what());
+    }
+    if (is_reference(spec)) at.fail("a technique other than the reference, which costs nothing on hardware");
     return index_in(plan_.techniques, spec);
   }
 

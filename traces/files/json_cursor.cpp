@@ -157,7 +157,7 @@ bool JsonCursor::boolean() const {
 std::uint32_t JsonCursor::integer(std::uint32_t low, std::uint32_t high) const {
   const double value = number_or_nan(*value_);
   if (!(value >= low && value <= high && value == std::floor(value))) {
-    fail("an integer " + std::to_string(low) + ".." + std::to_string(high));
+    fail(low == high ? std::to_string(low) : "an integer " + std::to_string(low) + ".." + std::to_string(high));
   }
   return static_cast<std::uint32_t>(value);
 }

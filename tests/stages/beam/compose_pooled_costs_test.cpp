@@ -8,13 +8,9 @@
 
 namespace beampipe::compose_pooled_costs_test {
 
-constexpr glm::vec3 kRed{1, 0, 0};
+using Ops = OperationCounts;
 
-OperationCounts sum(const std::vector<std::pair<OperationCounts, std::uint64_t>>& steps) {
-  OperationCounts all;
-  for (const auto& [step, times] : steps) all += step * times;
-  return all;
-}
+constexpr glm::vec3 kRed{1, 0, 0};
 
 void expect_operations(const OperationCounts& found, const OperationCounts& expected, const char* name) {
   EXPECT_EQ(found.mul_add, expected.mul_add) << name;
@@ -50,14 +46,13 @@ constexpr OperationCounts kPlane{.mul_add = 2, .add = 2 + 2, .convert = 3};
 constexpr OperationCounts kReach{.mul_add = 1, .add = 1, .bit = 2};
 
 // Three differences of planes; the reach of their difference; its negative; a comparison for each side.
-const OperationCounts kContest = sum({{{.add = 3 + 1 + 2}, 1}, {kReach, 1}});
+const OperationCounts kContest = Ops{.add = 3 + 1 + 2} + kReach;
 
 // Depth at a place: two products, two sums.
 constexpr OperationCounts kDepthAt{.mul_add = 2, .add = 2};
 
 // At each position two depths and their comparison; what is won is added; and who comes first in the trace.
-const OperationCounts kPartition =
-    sum({{kDepthAt, 2 * kPositions}, {{.add = kPositions}, 1}, {kWin, 1}, {kComparison, 1}});
+const OperationCounts kPartition = kDepthAt * (2 * kPositions) + Ops{.add = kPositions} + kWin + kComparison;
 
 // The bits of each word as a number, and their sum.
 constexpr OperationCounts kCount{.add = 7, .bit = 8, .convert = 8};
@@ -68,10 +63,10 @@ constexpr OperationCounts kCount{.add = 7, .bit = 8, .convert = 8};
 constexpr OperationCounts kSlot{.mul_add = 1 + 1 + 2, .add = 1 + 2 + 1 + 1 + 2, .bit = 1 + 2 + 3, .convert = 1 + 2};
 
 // A reach, both bounds in the pixel, and a comparison of each with the watermark.
-const OperationCounts kFinality = sum({{kReach, 1}, {{.add = 2 + 2}, 1}});
+const OperationCounts kFinality = kReach + Ops{.add = 2 + 2};
 
 // At each position a depth, the greater one, and whether it counts.
-const OperationCounts kFarthest = sum({{kDepthAt, kPositions}, {{.add = 2 * kPositions}, 1}});
+const OperationCounts kFarthest = kDepthAt * kPositions + Ops{.add = 2 * kPositions};
 
 // Two sums over positions; of each a conversion, a product and a division for the scale, a product, and the centre.
 constexpr OperationCounts kMean{.mul_add = 2 * 2, .add = 2 * kPositions + 2, .special = 2, .convert = 2};
@@ -86,7 +81,7 @@ constexpr OperationCounts kSides{.mul_add = 3 * kPositions + 4 + 1 + 3 * 2 + 3 +
 
 // Of both planes at both means the depths, their difference and its magnitude; the sum of the two, the lesser area, and
 // their product; and whether that is the least so far.
-const OperationCounts kPair = sum({{kDepthAt, 4}, {{.mul_add = 1, .add = 2 + 1 + 1 + 1, .bit = 2}, 1}});
+const OperationCounts kPair = kDepthAt * 4 + Ops{.mul_add = 1, .add = 2 + 1 + 1 + 1, .bit = 2};
 
 // Two distances: the greater number, the lesser one, their difference. A comparison of both.
 constexpr OperationCounts kTie{.add = 2 * 3 + 1};
@@ -107,15 +102,11 @@ constexpr OperationCounts kContent{.bit = 3};
 //    exponent's sum, shift and or, and a choice;
 //  - the error's format: a product, two limits, its sign, half a step, a conversion and a shift; two more ors in the
 //    slot; and the union of the masks.
-const OperationCounts kMerge = sum({{{.mul_add = 2 * 2 + 2, .add = 2 * 3 + 1 + 1, .special = 2 + 1}, 1},
-                                    {kContent, 2},
-                                    {{.add = 3}, 1},
-                                    {kThreshold, 1},
-                                    {{.mul_add = 2 * 3, .add = 3}, 1},
-                                    {{.mul_add = 1, .add = 3 + 3 + 1, .bit = 2}, 1},
-                                    {{.mul_add = 1, .add = 4, .bit = 2, .convert = 1}, 3},
-                                    {{.add = 2, .bit = 2}, 1},
-                                    {{.mul_add = 1, .add = 4, .bit = 1 + 2 + kWords, .convert = 1}, 1}});
+const OperationCounts kMerge = Ops{.mul_add = 2 * 2 + 2, .add = 2 * 3 + 1 + 1, .special = 2 + 1} + kContent * 2 +
+                               Ops{.add = 3} + kThreshold + Ops{.mul_add = 2 * 3, .add = 3} +
+                               Ops{.mul_add = 1, .add = 3 + 3 + 1, .bit = 2} +
+                               Ops{.mul_add = 1, .add = 4, .bit = 2, .convert = 1} * 3 + Ops{.add = 2, .bit = 2} +
+                               Ops{.mul_add = 1, .add = 4, .bit = 1 + 2 + kWords, .convert = 1};
 
 constexpr OperationCounts kFraction{.special = 1};
 
@@ -141,25 +132,19 @@ constexpr OperationCounts color_sums(std::uint64_t addends) {
 //  - what it is, as a threshold;
 //  - its exact area: a sum, a limit, a division; the area of what is final already;
 //  - of its visible area (simd/conserve.h) the fraction, its own error (a division, a difference), that of what is
-//  taken
-//    (the same), the free positions (a difference, a limit), its share of them (a division, and a choice by a
+//  taken (the
+//    same), the free positions (a difference, a limit), its share of them (a division, and a choice by a
 //    comparison), the estimate (a division, three products, a sum, a difference), and three limits, of which one is a
 //    difference;
 //  - by positions: a division; the products of both with three channels;
 //  - the sums of areas and of colours, that of positions, and the union of the masks.
-const OperationCounts kRetired =
-    sum({{kContent, 1},
-         {kThreshold, 1},
-         {{.add = 2, .special = 1}, 1},
-         {kFixedValue, 1},
-         {{.mul_add = 3, .add = 1 + 1 + 2 + 2 + 2 + 3 + 1, .special = 1 + 1 + 1 + 1 + 1}, 1},
-         {{.mul_add = 6, .special = 1}, 1},
-         {kFixedSum, 1},
-         {color_sums(6), 1},
-         {{.add = 1, .bit = kWords}, 1}});
+const OperationCounts kRetired = kContent + kThreshold + Ops{.add = 2, .special = 1} + kFixedValue +
+                                 Ops{.mul_add = 3, .add = 1 + 1 + 2 + 2 + 2 + 3 + 1, .special = 1 + 1 + 1 + 1 + 1} +
+                                 Ops{.mul_add = 6, .special = 1} + kFixedSum + color_sums(6) +
+                                 Ops{.add = 1, .bit = kWords};
 
 // A reach, both bounds, two limits of each; and whether they are the farthest in the pixel.
-const OperationCounts kBounds = sum({{kReach, 1}, {{.add = 2 + 4 + 1}, 1}});
+const OperationCounts kBounds = kReach + Ops{.add = 2 + 4 + 1};
 
 // The least and the greatest of three depths.
 constexpr OperationCounts kVertices{.add = 2 + 2};
@@ -171,34 +156,27 @@ constexpr OperationCounts votes(std::uint64_t planes) {
 }
 
 // Its place from the centre; the surface's depth there; two magnitudes, their sum, a product; a sum and a comparison.
-const OperationCounts kSpeckTest = sum({{{.mul_add = 1, .add = 2 + 1 + 1 + 1, .bit = 2}, 1}, {kDepthAt, 1}});
+const OperationCounts kSpeckTest = Ops{.mul_add = 1, .add = 2 + 1 + 1 + 1, .bit = 2} + kDepthAt;
 
 // A threshold from its area and depth. Both sides' areas, the greater one; the part that is seen: a product, a
 // division; their new sum, its value, the greater one, the difference; what is left of the pixel: a value, a
 // difference, a limit; and whether the result is above 0.
-const OperationCounts kSpeckSeen = sum({{kThreshold, 1},
-                                        {kFixedValue, 4},
-                                        {kFixedSum, 1},
-                                        {{.mul_add = 1, .add = 2 + 1 + 1 + 1 + 1, .bit = 1, .special = 1}, 1}});
+const OperationCounts kSpeckSeen =
+    kThreshold + kFixedValue * 4 + kFixedSum + Ops{.mul_add = 1, .add = 2 + 1 + 1 + 1 + 1, .bit = 1, .special = 1};
 
 // Three products, and the sums, of which those by positions are known to stay.
-const OperationCounts kSpeckAdded = sum({{{.mul_add = 3}, 1}, {kFixedSum, 1}, {color_sums(3), 1}});
+const OperationCounts kSpeckAdded = Ops{.mul_add = 3} + kFixedSum + color_sums(3);
 
 // Two estimates become one:
 //  - the count of positions as a part of the pixel; of seven sums the values;
 //  - the area: at least a unit; a tolerance; a difference, a sum and two limits; at most 1; 1 by a comparison and a
 //    choice; the scale of colours;
 //  - the brightest channel: the larger of it and of two quotients for each channel, of which one has a limit, which is
-//  a
-//    quotient, and a choice by a comparison; its tolerance: a quotient and a product;
+//    a quotient, and a choice by a comparison; its tolerance: a quotient and a product;
 //  - of each channel a product, a difference, a sum and two limits.
-const OperationCounts kLimit = sum({{kCount, 1},
-                                    {{.mul_add = 1}, 1},
-                                    {kFixedValue, 7},
-                                    {{.add = 1 + 4 + 1 + 2, .special = 1 + 1}, 1},
-                                    {{.add = 2 + 1 + 2, .special = 3}, 3},
-                                    {{.mul_add = 1, .special = 1}, 1},
-                                    {{.mul_add = 1, .add = 4}, 3}});
+const OperationCounts kLimit = kCount + Ops{.mul_add = 1} + kFixedValue * 7 +
+                               Ops{.add = 1 + 4 + 1 + 2, .special = 1 + 1} + Ops{.add = 2 + 1 + 2, .special = 3} * 3 +
+                               Ops{.mul_add = 1, .special = 1} + Ops{.mul_add = 1, .add = 4} * 3;
 
 constexpr std::uint64_t kSetup = 4 + 5 * 8, kSlotBytes = 8;  // to compute a plane: its triangle, and five doubles
 
@@ -213,7 +191,7 @@ TEST(PooledCosts, Steps) {
   const Step steps[] = {
       {"a fragment, with the closed depth and the word", &Work::fragments, kComparison, 57 + 4 + 6},
       {"a mask", &Work::masks, kClaim},
-      {"a claim: the positions that the fragment covers, and its slot", &Work::claims, sum({{kCount, 1}, {kSlot, 1}})},
+      {"a claim: the positions that the fragment covers, and its slot", &Work::claims, kCount + kSlot},
       {"a state that may be met", &Work::masks_tested, kMeeting},
       {"a win in the whole pixel", &Work::wins, kWin},
       {"a state that loses positions", &Work::takes, kTake},
@@ -263,12 +241,12 @@ TEST(PooledCosts, StepsThatDependOnPlanesAndStates) {
   };
   PooledWork splits, joins, specks;
   splits.splits[1] = 1, splits.splits[3] = 2;
-  expect_operations(charged(splits), sum({{split(1), 1}, {split(3), 2}}), "splits");
+  expect_operations(charged(splits), split(1) + split(3) * 2, "splits");
   // Of states 0 to 4, two have bit 0, two bit 1, one bit 2.
   joins.joins[1] = 7, joins.joins[2] = 1, joins.joins[5] = 3;
-  expect_operations(charged(joins), sum({{join(kTwoStates), 1}, {join(2 + 2 + 1), 3}}), "joins");
+  expect_operations(charged(joins), join(kTwoStates) + join(2 + 2 + 1) * 3, "joins");
   specks.specks[0] = 1, specks.specks[2] = 2;
-  expect_operations(charged(specks), sum({{votes(0), 1}, {votes(2), 2}}), "specks");
+  expect_operations(charged(specks), votes(0) + votes(2) * 2, "specks");
 }
 
 // ---- What happens to a pixel ----
@@ -306,7 +284,7 @@ void expect_charges(const std::vector<Happening>& happenings, NewTile&& new_tile
     const auto [without, spills_without] = compose(list);
     list.push_back(last);
     const auto [with, spills] = compose(list);
-    expect_operations(with.ops, sum({{without.ops, 1}, {charge.ops, 1}}), name);
+    expect_operations(with.ops, without.ops + charge.ops, name);
     EXPECT_EQ(with.bytes_read - without.bytes_read, charge.read) << name;
     EXPECT_EQ(with.bytes_written - without.bytes_written, charge.written) << name;
     EXPECT_EQ(spills.reads - spills_without.reads, charge.reads_in_memory) << name;
@@ -332,127 +310,56 @@ TEST(PooledCosts, SurfacesOfAPixel) {
        "chunks",
        {},
        1,
-       {sum({{kComparison, 1}, {kMeeting, 1}, {kClaim, 1}, {kCount, 1}, {kSlot, 1}, {kTake, 1}, {join(kTwoStates), 1}}),
-        kPartial + 3 * kLink, kBitPlane + kSlotBytes + kWord}},
+       {kComparison + kMeeting + kClaim + kCount + kSlot + kTake + join(kTwoStates), kPartial + 3 * kLink,
+        kBitPlane + kSlotBytes + kWord}},
       {"a second owner, in front of the surface: its plane; two slots",
        {0},
        1,
-       {sum({{kComparison, 1},
-             {kPlane, 1},
-             {kContest, 1},
-             {kMeeting, 1},
-             {kWin, 1},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 1},
-             {join(kTwoStates), 1}}),
+       {kComparison + kPlane + kContest + kMeeting + kWin + kClaim + kCount + kSlot + kTake + join(kTwoStates),
         kPartial + kSetup + 3 * kLink, kBitPlane + 2 * kSlotBytes + kWord}},
       {"growth: a third owner meets one of two; three chunks more, linked to the others",
        {0, 1},
        2,
-       {sum({{kComparison, 1},
-             {split(1), 1},
-             {kMeeting, 2},
-             {kPlane, 1},
-             {kContest, 1},
-             {kWin, 1},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 1},
-             {join(kThreeStates), 1}}),
+       {kComparison + split(1) + kMeeting * 2 + kPlane + kContest + kWin + kClaim + kCount + kSlot + kTake +
+            join(kThreeStates),
         kPartial + kBitPlane + 3 * kLink + kOwner + 3 * kLink, kLink + kSlotBytes + 2 * kBitPlane + kWord}},
       {"shrinking: a fragment takes all from two of three owners, and the third slot becomes the first; the pixel may "
-       "be "
-       "closed nearer than before",
+       "be closed nearer than before",
        {0, 1, 2},
        5,
-       {sum({{kComparison, 1},
-             {split(2), 1},
-             {kMeeting, 3},
-             {kPlane, 2},
-             {kContest, 2},
-             {kWin, 2},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 2},
-             {kPlane, 2},
-             {kBounds, 2},
-             {kVertices, 2},
-             {join(kTwoStates), 1}}),
+       {kComparison + split(2) + kMeeting * 3 + kPlane * 2 + kContest * 2 + kWin * 2 + kClaim + kCount + kSlot +
+            kTake * 2 + kPlane * 2 + kBounds * 2 + kVertices * 2 + join(kTwoStates),
         kPartial + 2 * kBitPlane + 6 * kLink + 2 * kOwner + kSlotBytes + 2 * kBoundedOwner,
         kSlotBytes + kLink + kBitPlane + kSlotBytes + kWord}},
       {"a surface in front of three: the record is given back",
        {0, 1, 2},
        3,
-       {sum({{kComparison, 1},
-             {split(2), 1},
-             {kMeeting, 3},
-             {kPlane, 3},
-             {kContest, 3},
-             {kWin, 3},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 3},
-             {kPlane, 1},
-             {kBounds, 1},
-             {kVertices, 1}}),
+       {kComparison + split(2) + kMeeting * 3 + kPlane * 3 + kContest * 3 + kWin * 3 + kClaim + kCount + kSlot +
+            kTake * 3 + kPlane + kBounds + kVertices,
         kWhole + 2 * kBitPlane + 6 * kLink + 3 * kOwner + kBoundedOwner, kLink + kWord}},
       {"a speck in front of three: six words of planes; the owners of three positions; a chunk for the sums, where "
        "nothing "
        "is final, with the nearest depth",
        {0, 1, 2},
        4,
-       {sum({{kComparison, 1},
-             {votes(2), 1},
-             {kPlane, 3},
-             {kSpeckTest, 3},
-             {kSpeckSeen, 1},
-             {kComparison, 1},
-             {kSpeckAdded, 1}}),
+       {kComparison + votes(2) + kPlane * 3 + kSpeckTest * 3 + kSpeckSeen + kComparison + kSpeckAdded,
         kPartial + 6 * 4 + 6 * kLink + 3 * kOwner + kLink, kLink + kSums + kWord}},
       {"a speck that is hidden when a fragment closes the pixel nearer: the sums are given back, and a slot moves",
        {0, 5, 4},
        8,
-       {sum({{kComparison, 1},
-             {split(1), 1},
-             {kMeeting, 2},
-             {kPlane, 1},
-             {kContest, 1},
-             {kWin, 1},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 1},
-             {kPlane, 2},
-             {kBounds, 2},
-             {kVertices, 2},
-             {kComparison, 1},
-             {join(kTwoStates), 1}}),
+       {kComparison + split(1) + kMeeting * 2 + kPlane + kContest + kWin + kClaim + kCount + kSlot + kTake +
+            kPlane * 2 + kBounds * 2 + kVertices * 2 + kComparison + join(kTwoStates),
         kPartial + kBitPlane + 4 * kLink + kOwner + kSlotBytes + 2 * kBoundedOwner + kSums,
         kSlotBytes + kLink + kBitPlane + kSlotBytes + kWord}},
       {"a partition: a slanted surface through another one",
        {0},
        6,
-       {sum({{kComparison, 1},
-             {kPlane, 1},
-             {kContest, 1},
-             {kMeeting, 1},
-             {kPartition, 1},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 1},
-             {join(kTwoStates), 1}}),
+       {kComparison + kPlane + kContest + kMeeting + kPartition + kClaim + kCount + kSlot + kTake + join(kTwoStates),
         kWhole + kSetup + 3 * kLink, kBitPlane + 2 * kSlotBytes + kWord}},
       {"a tie: at equal depth the earlier surface keeps its positions",
        {0},
        7,
-       {sum({{kComparison, 1}, {kPlane, 1}, {kContest, 1}, {kMeeting, 1}, {kPartition, 1}, {kClaim, 1}}),
-        kPartial + kSetup, 0}},
+       {kComparison + kPlane + kContest + kMeeting + kPartition + kClaim, kPartial + kSetup, 0}},
   };
   expect_charges(happenings, [&] { return OpenTile<kWords>(triangles, colors); });
 }
@@ -465,7 +372,7 @@ TEST(PooledCosts, AHiddenFragment) {
     add_triangle(triangles, {-9'000, -9'000, -0.9f + behind}, {9'000, -9'000, -0.1f + behind},
                  {0, 9'000, -0.5f + behind});
   const std::vector<glm::vec3> colors(2, kRed);
-  expect_charges({{"hidden", {0}, 1, {sum({{kComparison, 1}, {kPlane, 1}, {kContest, 1}}), kWhole + kSetup, 0}}},
+  expect_charges({{"hidden", {0}, 1, {kComparison + kPlane + kContest, kWhole + kSetup, 0}}},
                  [&] { return OpenTile<kWords>(triangles, colors); });
 }
 
@@ -483,20 +390,8 @@ TEST(PooledCosts, Merges) {
     expect_charges({{ties > 0 ? "with ties" : "without ties",
                      {0, 1},
                      2,
-                     {sum({{kComparison, 1},
-                           {split(2), 1},
-                           {kMeeting, 3},
-                           {kClaim, 1},
-                           {kCount, 1},
-                           {kSlot, 1},
-                           {kTake, 1},
-                           {kCount, 3},
-                           {kPlane, 3},
-                           {kMean, 3},
-                           {kPair, 3},
-                           {kTie, ties},
-                           {kMerge, 1},
-                           {join(kThreeStates), 1}}),
+                     {kComparison + split(2) + kMeeting * 3 + kClaim + kCount + kSlot + kTake + kCount * 3 +
+                          kPlane * 3 + kMean * 3 + kPair * 3 + kTie * ties + kMerge + join(kThreeStates),
                       kPartial + 2 * kBitPlane + 5 * kLink + 3 * (kSlotBytes + kOwner) + kSlotBytes,
                       kSlotBytes + 2 * kBitPlane + 2 * kSlotBytes + kWord}}},
                    [&] { return OpenTile<kWords, 2>(triangles, colors); });
@@ -519,27 +414,16 @@ TEST(PooledCosts, Collections) {
       {"nothing is final; another surface in front of nothing, and three chunks more",
        {0},
        1,
-       {sum({{kComparison, 1},
-             {kFinality, 1},
-             {kPlane, 1},
-             {kComparison, 1},
-             {split(1), 1},
-             {kMeeting, 2},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 1},
-             {join(kThreeStates), 1}}),
+       {kComparison + kFinality + kPlane + kComparison + split(1) + kMeeting * 2 + kClaim + kCount + kSlot + kTake +
+            join(kThreeStates),
         kWord + 4 + 3 * kLink + kOwner + kPartial + kBitPlane + 3 * kLink + 2 * kLink,
         kLink + kSlotBytes + 2 * kBitPlane + kWord, 3 + 3 + 2, 5}},
       {"two are final and have one share each; the new one takes what is left and closes the pixel",
        {0, 1},
        2,
-       {sum({{kComparison, 1},     {kFinality, 2}, {kPlane, 2},      {split(2), 1}, {kCount, 2},
-             {kCount, 1},          {kFraction, 2}, {kComparison, 1}, {kRetired, 2}, {join(kTwoStates), 1},
-             {kComparison, 1},     {split(1), 1},  {kMeeting, 1},    {kClaim, 1},   {kCount, 1},
-             {kSlot, 1},           {kTake, 1},     {kPlane, 1},      {kBounds, 1},  {kVertices, 1},
-             {join(kTwoStates), 1}}),
+       {kComparison + kFinality * 2 + kPlane * 2 + split(2) + kCount * 2 + kCount + kFraction * 2 + kComparison +
+            kRetired * 2 + join(kTwoStates) + kComparison + split(1) + kMeeting + kClaim + kCount + kSlot + kTake +
+            kPlane + kBounds + kVertices + join(kTwoStates),
         kWord + 4 + 5 * kLink + 2 * kOwner + 2 * kBitPlane + 5 * kLink + 2 * kSlotBytes + kPartial + kBitPlane +
             3 * kLink + kBoundedOwner + kLink,
         kSums + kLink + kBitPlane + kWord + kLink + kBitPlane + kSlotBytes + kWord, 5 + 5 + 3 + 1, 1 + 3 + 4}},
@@ -547,15 +431,7 @@ TEST(PooledCosts, Collections) {
        "hidden",
        {0, 1, 2},
        3,
-       {sum({{kComparison, 1},
-             {kFinality, 1},
-             {kPlane, 1},
-             {split(1), 1},
-             {kCount, 1},
-             {kCount, 1},
-             {kRetired, 1},
-             {kLimit, 1},
-             {kComparison, 1}}),
+       {kComparison + kFinality + kPlane + split(1) + kCount + kCount + kRetired + kLimit + kComparison,
         kWord + 4 + 4 * kLink + kOwner + kBitPlane + 4 * kLink + kSlotBytes + 2 * kSums + kWhole, kSums + kLink + kWord,
         4 + 4, 1}},
   };
@@ -574,35 +450,14 @@ TEST(PooledCosts, Spills) {
       {"three chunks more, in memory: their links are read, and they are written",
        {0, 1},
        2,
-       {sum({{kComparison, 1},
-             {split(1), 1},
-             {kMeeting, 2},
-             {kPlane, 1},
-             {kContest, 1},
-             {kWin, 1},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 1},
-             {join(kThreeStates), 1}}),
+       {kComparison + split(1) + kMeeting * 2 + kPlane + kContest + kWin + kClaim + kCount + kSlot + kTake +
+            join(kThreeStates),
         kPartial + kBitPlane + 3 * kLink + kOwner + 3 * kLink, kLink + kSlotBytes + 2 * kBitPlane + kWord, 3, 3}},
       {"three are read, moved, and given back with a link",
        {0, 1, 2},
        3,
-       {sum({{kComparison, 1},
-             {split(2), 1},
-             {kMeeting, 3},
-             {kPlane, 2},
-             {kContest, 2},
-             {kWin, 2},
-             {kClaim, 1},
-             {kCount, 1},
-             {kSlot, 1},
-             {kTake, 2},
-             {kPlane, 2},
-             {kBounds, 2},
-             {kVertices, 2},
-             {join(kTwoStates), 1}}),
+       {kComparison + split(2) + kMeeting * 3 + kPlane * 2 + kContest * 2 + kWin * 2 + kClaim + kCount + kSlot +
+            kTake * 2 + kPlane * 2 + kBounds * 2 + kVertices * 2 + join(kTwoStates),
         kPartial + 2 * kBitPlane + 6 * kLink + 2 * kOwner + kSlotBytes + 2 * kBoundedOwner + 3 * kChunkBytes,
         kSlotBytes + kLink + kBitPlane + kSlotBytes + kWord + 3 * kChunkBytes, 3 + 3, 1}},
   };
@@ -623,14 +478,7 @@ TEST(PooledCosts, TheEndOfAPixel) {
   EXPECT_EQ(covered.finishing.bytes_read, kWord + 4);
   shared.compose({0, 1});
   expect_operations(shared.finishing.ops,
-                    sum({{kComparison, 1},
-                         {split(1), 1},
-                         {kCount, 2},
-                         {kCount, 1},
-                         {kFraction, 2},
-                         {kComparison, 1},
-                         {kRetired, 2},
-                         {kLimit, 1}}),
+                    kComparison + split(1) + kCount * 2 + kCount + kFraction * 2 + kComparison + kRetired * 2 + kLimit,
                     "shared");
   EXPECT_EQ(shared.finishing.bytes_read, kWord + 4 + kBitPlane + 3 * kLink + 2 * kSlotBytes + kSums);
   EXPECT_EQ(shared.finishing.bytes_written, kSums);

@@ -38,20 +38,20 @@ TEST(ComposeZ3, OrderDoesNotMatterWhileLayersFit) {
     if (!front_first) add_left_of(triangles, 128, -0.75f);
     std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}};
     if (!front_first) std::swap(colors[0], colors[1]);
-    EXPECT_EQ(z3_colors(composed<1, 2>(triangles, colors, kPixel)).at(0).color, glm::vec3(0.5f, 0.5f, 0))
+    EXPECT_EQ(z3_colors(composed<1, 3>(triangles, colors, kPixel)).at(0).color, glm::vec3(0.5f, 0.5f, 0))
         << front_first;
   }
 }
 
 TEST(ComposeZ3, TheClosestTwoAreMerged) {
-  // Three strips next to each other. The two that are close in depth are merged, so a fragment between them and the
-  // third hides both.
+  // Four strips next to each other. The two that are closest in depth are merged.
   SetupTriangles triangles;
   add_everywhere(triangles, -0.4f);
   add_left_of(triangles, 192, -0.41f);
   add_left_of(triangles, 64, -0.9f);
-  const std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const auto pixels = composed<1, 2>(triangles, colors, kPixel);
+  add_left_of(triangles, 32, -0.95f);
+  const std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
+  const auto pixels = composed<1, 3>(triangles, colors, kPixel);
   const PixelColor before = z3_colors(pixels).at(0);
   EXPECT_NEAR(before.color.r, 0.25, 1e-3);
   EXPECT_NEAR(before.color.g, 0.5, 1e-3);

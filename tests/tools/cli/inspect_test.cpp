@@ -218,8 +218,8 @@ TEST_F(InspectTest, WritesAPictureAndAPage) {
 
 TEST_F(InspectTest, MistakesAreOneLineAndLeaveNothing) {
   const std::tuple<Names, int, const char*> mistakes[] = {
-      {{"-t", "beam"}, 2, "expected --pixel X,Y or --worst N"},
-      {{"-t", "beam", "--pixel", "1,1", "--worst", "1"}, 2, "expected --pixel X,Y or --worst N"},
+      {{"-t", "beam"}, 2, "expected either --pixel X,Y or --worst N"},
+      {{"-t", "beam", "--pixel", "1,1", "--worst", "1"}, 2, "expected either --pixel X,Y or --worst N"},
       {{"--pixel", "1,1"}, 2, "--technique"},
       {{"-t", "beam", "--pixel", "20,0"}, 2, "X from 0 to 19 and Y from 0 to 11"},
       {{"-t", "beam", "--pixel", "0,12"}, 2, "--pixel 0,12"},

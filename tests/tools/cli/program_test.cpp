@@ -381,12 +381,21 @@ TEST_F(ProgramTest, ExportSoupWritesTheTrianglesThatAreSeen) {
   expect_error({"export-soup", path("trace.json"), "--frame", "9", "-o", path("x.soup")}, 2, "--frame");
 }
 
-TEST_F(ProgramTest, CheckCaptureSaysWhereThereIsNoDepth) {
-  EXPECT_EQ(succeed({"check-capture", path("trace.json"), "--frames", "1", "-o", path("out")}),
-            "frame 1: the trace has no captured depth\n");
-  const Parsed json = Parsed::parse(succeed({"check-capture", path("trace.json"), "--json"}));
-  EXPECT_EQ(json["beampipe_check_capture"], 1);
-  for (const auto& frame : json["frames"]) EXPECT_EQ(frame.size(), 1u);  // its number
+TEST_F(ProgramTest, ReportsSayWhichCommandMadeThem) {
+  succeed({"run", path("trace.json"), "-t", "msaa:1", "--no-memory-model", "-o", path("out of it")});
+  EXPECT_EQ(Parsed::parse(read_text(folder_ / "out of it/report.json"))["command_line"],
+            "beampipe run " + path("trace.json") + " -t msaa:1 --no-memory-model -o '" + path("out of it") + "'");
+}
+
+TEST_F(ProgramTest, DescriptionsOfHardwareStartFromOneThatIsBuiltIn) {
+  write_text(folder_ / "mine.json", succeed({"schema", "hardware", "--built-in", "mali_g710"}));
+  succeed({"run", path("trace.json"), "-t", "msaa:1", "--hardware", path("mine.json"), "-o", path("out")});
+  expect_error({"schema", "trace", "--built-in", "mali_g710"}, 2, "expected the kind hardware, found trace");
+}
+
+TEST_F(ProgramTest, CheckCaptureNeedsACapture) {
+  expect_error({"check-capture", path("trace.json"), "-o", path("out")}, 1,
+               "trace.json: expected the captured program's depths or picture");
 }
 
 TEST_F(ProgramTest, MakeListsAndMakesScenes) {

@@ -161,6 +161,18 @@ class Program(InFolder):
         self.assertEqual(found.ladder, [(rung["samples"], rung["error"]) for rung in self.report.json["metric_msaa_ladder"]])
         self.assertIn("msaa:8", found.table())
 
+    def test_the_first_frames_may_be_drawn_for_histories_only(self):
+        self.run_program("compare", "fence.json", "-t", *self.specs, "--measure-from", "1", "--ladder", "1,4", "-o",
+                         "late")
+        report = beampipe.Report(self.folder / "late")
+        found = beampipe.compare(self.trace, self.specs, measure_from=1, ladder=[1, 4])
+        for each in found:
+            self.assertEqual([rendering.frame for rendering in each.renderings], [1])
+            self.assertEqual(each.error, report[each.name]["error"]["rmse"])
+        for wrong in (-1, 2, 0.5):
+            with self.assertRaisesRegex(beampipe.Error, f"measure_from: expected a number from 0 to 1, found {wrong}"):
+                beampipe.compare(self.trace, self.specs, measure_from=wrong)
+
     def test_the_range_of_a_rate_by_rmse_is_that_of_the_program(self):
         self.run_program("compare", "fence.json", "-t", *self.specs, "--reference-error", "-o", "by_rmse")
         report = beampipe.Report(self.folder / "by_rmse")
@@ -221,6 +233,19 @@ class Own(unittest.TestCase):
         self.assertEqual(found["beam"].error, found["beam"].errors["max"])
         self.assertEqual([n for n, _ in found.ladder], [1, 4])
         self.assertGreater(found["beam"].rate.samples, 1)
+
+    def test_the_heading_of_errors_says_what_they_are(self):
+        def ssim(image, reference):
+            return 0
+
+        for metric, heading in (("psnr", "sRGB RMSE"), ("ssim", "1 - SSIM"), ("mae", "MAE"), (ssim, "ssim")):
+            found = beampipe.compare(self.trace, ["msaa:1"], metric=metric, ladder=[1])
+            self.assertRegex(found.table(), f"^technique +RMSE x 1000  {heading} +EMR")
+            self.assertEqual(repr(found), found.table())
+
+    def test_what_is_printed_has_no_arrays(self):
+        found = beampipe.compare(self.trace, ["msaa:1"], ladder=[1])["msaa:1"]
+        self.assertNotIn("array", repr(found) + repr(found.renderings[0]))
 
     def test_the_standard_pattern_is_msaa(self):
         four = [[6, 2], [14, 6], [2, 10], [10, 14]]  # sixteenths of a pixel
@@ -299,10 +324,18 @@ class Merges(unittest.TestCase):
         trace = half_plane(5.5)
         with self.assertRaisesRegex(ZeroDivisionError, "division"):
             beampipe.render(trace, beampipe.Merge(lambda fragments: 1 / 0))
-        with self.assertRaisesRegex(beampipe.Error, "rgb: expected 4 finite numbers from the rule, R, G, B and A"):
-            beampipe.render(trace, beampipe.Merge(lambda fragments: [1, 1, 1], name="rgb"))
-        with self.assertRaisesRegex(beampipe.Error, r"A from 0 to 1, found \[0. 0. 0. 2.\]"):
-            beampipe.render(trace, beampipe.Merge(lambda fragments: [0, 0, 0, 2]))
+        for returned, expected in (([1, 1, 1], r"\(3,\)"), (None, "NoneType"), ("rgba", "str"),
+                                   ([0, 0, 0, 2], r"\[0. 0. 0. 2.\]"), ([0, math.nan, 0, 1], r"\[ 0. nan  0.  1.\]"),
+                                   ([-1, 0, 0, 1], r"\[-1.  0.  0.  1.\]"),
+                                   ([0, 0, 0, -0.5], r"\[ 0.   0.   0.  -0.5\]")):
+            def rule(fragments):
+                return returned if fragments["area"][0] < 1 else [0, 0, 0, 1]
+
+            with self.assertRaisesRegex(beampipe.Error, r"^rule, frame 0, pixel \(5, 0\): expected 4 finite numbers "
+                                                        "from the rule, R, G and B from 0 and A from 0 to 1, "
+                                                        f"found {expected}$"):
+                beampipe.render(trace, beampipe.Merge(rule), threads=1)
+        beampipe.render(trace, beampipe.Merge(lambda fragments: [-1e-4, 0, 0, 1.0001]))  # rounded
         for rule in (lambda fragments: fragments["colour"][0], lambda fragments: fragments[0]["colour"]):
             with self.assertRaisesRegex(beampipe.Error, "mine: no field of name colour: expected area, depth, plane, front, "
                                                         "color, mask"):
@@ -375,6 +408,11 @@ class OwnProgram(InFolder):
             self.run_own(*command)
         self.assertTrue((self.folder / "out/report.html").exists())
 
+    def test_a_note_says_that_the_cost_of_rules_is_left_out(self):
+        note = "beampipe: note: nearest: what the rule itself computes is in no counter and no modelled time\n"
+        for technique, expected in (("nearest", note), ("dim", "")):
+            self.assertEqual(self.start("run", "fence.json", "-t", technique, "-o", "noted").stderr, expected)
+
     def test_a_sweep_keeps_results_until_the_script_changes(self):
         plan = {"beampipe_sweep": 1, "traces": ["fence.json"], "techniques": ["dim", "nearest"], "errors": True}
         (self.folder / "plan.json").write_text(json.dumps(plan))
@@ -408,6 +446,8 @@ class OwnProgram(InFolder):
                 beampipe.program(["--version"], [beampipe.Pattern([[0.5, 0.5]], name=wrong)])
         with self.assertRaisesRegex(beampipe.Error, "found the spec beam"):
             beampipe.program(["--version"], ["beam"])
+        with self.assertRaisesRegex(beampipe.Error, r"over: expected a function of \(trace, frame\)"):
+            beampipe.program(["--version"], [over])
 
 
 class Errors(unittest.TestCase):
@@ -424,8 +464,21 @@ class Errors(unittest.TestCase):
         self.check("pool=", lambda: beampipe.render(trace, "beam", pool=61))
         self.check("expected a spec, a Pattern, a Merge or a function, found int", lambda: beampipe.render(trace, 8))
         self.check("expected no options, found pool", lambda: beampipe.render(trace, lambda t, f: image, pool=60))
-        self.check(r"picture of 16 x 16 x 3 or 4 numbers, found \(4, 4, 3\)", lambda: beampipe.render(trace, lambda t, f: image))
-        self.check("expected frames from 0 to 0, found 1", lambda: beampipe.render(trace, "beam", frames=1))
+        for found, expected in ((image, r"\(4, 4, 3\)"), (None, "NoneType"), ("white", "str")):
+            self.check(f"picture of 16 x 16 x 3 or 4 numbers, found {expected}",
+                       lambda: beampipe.render(trace, lambda t, f: found))
+        for wrong in (1, -1, "a", 0.5, [0, 1]):
+            self.check("expected frames from 0 to 0, found", lambda: beampipe.render(trace, "beam", frames=wrong))
+        for work in (beampipe.render, lambda trace, rule: beampipe.compare(trace, [rule])):
+            self.check(r"over: expected a function of \(trace, frame\), or Merge\(f\) for a merge rule",
+                       lambda: work(trace, over))
+            self.check("found the class Pattern", lambda: work(trace, beampipe.Pattern))
+            self.check("found Comparison", lambda: work(trace, beampipe.Comparison("rmse", "RMSE", {}, [], [])))
+            self.check("trace: expected a Trace, as open_trace.* returns it, found str", lambda: work("a.json", "beam"))
+        whole = "width and height: expected whole numbers from 0"
+        self.check(whole, lambda: beampipe.render(trace, "beam", width=-1))
+        self.check(whole, lambda: beampipe.compare(trace, ["beam"], height=0.5))
+        self.check("make: expected whole numbers from 0", lambda: beampipe.make("fence", width=-1))
         self.check("threads: expected 1 to 1024", lambda: beampipe.render(trace, "beam", threads=-1))
         self.check("cannot be 8 x 4 pixels", lambda: beampipe.render(trace, "beam", width=8, height=4))
         self.check("no/trace.json", lambda: beampipe.open_trace("no/trace.json"))
@@ -443,9 +496,17 @@ class Errors(unittest.TestCase):
         self.check("found both", lambda: make(points, [[0, 1, 2]], eye=(0, 0, 1), view=numpy.eye(4), **size))
         self.check("width and height", lambda: make(points, [[0, 1, 2]], width=0, height=8))
         self.check("pixel 16,3", lambda: beampipe.inspect(trace, "beam", 16, 3))
-        self.check("pixel -1,3", lambda: beampipe.inspect(trace, "beam", -1, 3))
+        self.check("trace: expected a Trace", lambda: beampipe.inspect("a.json", "beam", 1, 3))
+        self.check("pixel -1,3, frame 0: expected whole numbers from 0", lambda: beampipe.inspect(trace, "beam", -1, 3))
         self.check("cannot be inspected", lambda: beampipe.inspect(trace, "taa:4", 3, 3))
         self.check("metric: expected one of rmse", lambda: beampipe.compare(trace, ["beam"], metric="rms"))
+        self.check("metric: expected one of rmse.* found 5", lambda: beampipe.compare(trace, ["beam"], metric=5))
+        rate = beampipe.equivalent_rate
+        self.check("ladder: expected .N, error. for rising N, found none", lambda: rate(0.01, []))
+        self.check("ladder: expected .N, error. for rising N, found 4, 2", lambda: rate(0.01, [(4, 0.1), (2, 0.2)]))
+        self.check("error: expected a number that is at least 0, found -1", lambda: rate(-1, [(1, 0.1), (2, 0.05)]))
+        self.check("error of msaa:2: expected a number that is at least 0, found nan",
+                   lambda: rate(1, [(1, 1), (2, math.nan)]))
         self.check("at least 0, found nan", lambda: beampipe.compare(trace, ["beam"], metric=lambda a, b: numpy.nan, ladder=[1]))
         self.check("given twice", lambda: beampipe.compare(trace, ["beam", "beam"]))
         self.check("technique 'msaa:3'", lambda: beampipe.compare(trace, ["beam"], ladder=[3]))
@@ -458,6 +519,15 @@ class Errors(unittest.TestCase):
         self.check("", lambda: beampipe.measures.rmse(image[:3], image))
         self.check("pixels_per_degree", lambda: beampipe.measures.flip(image, image, 0))
         self.check("p99 has no map", lambda: beampipe.measures.error_map("p99", image, image))
+
+    def test_pictures_with_values_that_are_not_finite_are_refused(self):
+        def hot(trace, frame):
+            picture = numpy.ones((SIZE, SIZE, 3))
+            picture[3, 5, 1] = numpy.nan
+            return picture
+
+        self.check(r"^hot, frame 0, pixel \(5, 3\): expected finite numbers, found \[ 1. nan  1.\]$",
+                   lambda: beampipe.compare(half_plane(5.5), [hot]))
 
     def test_an_error_in_the_users_own_code_goes_through(self):
         with self.assertRaisesRegex(ZeroDivisionError, "division"):

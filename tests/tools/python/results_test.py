@@ -66,6 +66,16 @@ class Module(InFolder):
         self.assertEqual(rows.sum(), 1)
         self.assertAlmostEqual(table["rmse"][rows][0], self.report["beam"]["error"]["rmse"])
 
+    def test_columns_of_a_table_are_integers_numbers_or_texts(self):
+        file = self.folder / "some.csv"
+        file.write_text("width,gap,error,name\n320,1,2,a\n40,,0.5,b\n")
+        table = beampipe.read_table(file)
+        self.assertEqual([values.dtype.kind for values in table.values()], ["i", "f", "f", "U"])
+        self.assertEqual(table["width"].tolist(), [320, 40])
+
+    def test_a_report_says_what_it_is_of(self):
+        self.assertEqual(repr(self.report), f"Report({str(self.folder / 'out')!r}) of beam, msaa:8, reference")
+
     def test_broken_files_are_one_line(self):
         good = (self.folder / "out/beam/frame_0000.exr").read_bytes()
         for name, data in (("empty", b""), ("short", good[:200]), ("half", good[:len(good) // 2]), ("text", b"x" * 500)):
@@ -81,8 +91,23 @@ class Module(InFolder):
             beampipe.Report(self.folder / "nothing")
         with self.assertRaisesRegex(beampipe.Error, "expected one of the techniques .*msaa:8.*, found msaa:9"):
             self.report["msaa:9"]
+        for read in (beampipe.Report.picture, beampipe.Report.counters):
+            for frame in (2, -1):
+                with self.assertRaisesRegex(beampipe.Error, f"out: expected a frame from 0 to 1, found {frame}$"):
+                    read(self.report, "beam", frame)
+        with self.assertRaisesRegex(beampipe.Error, "no.exr: expected an EXR file, found none"):
+            beampipe.read_exr(self.folder / "no.exr")
         with self.assertRaisesRegex(beampipe.Error, "found no file"):
             beampipe.read_table(self.folder / "no.csv")
+
+    def test_what_is_no_table_is_refused(self):
+        for name, data in (("empty.csv", b""), ("short.csv", b"a,b\n1\n"), ("line.json", b'{"a": 1}'),
+                           ("not.sqlite", b"a,b\n1,2\n"), ("empty.sqlite", b""), ("picture.csv", b"\x00\xff")):
+            (self.folder / name).write_bytes(data)
+        for name in ("out/report.json", "empty.csv", "short.csv", "line.json", "not.sqlite", "empty.sqlite",
+                     "picture.csv"):
+            with self.assertRaisesRegex(beampipe.Error, f"{name}: expected a table, CSV or SQLite"):
+                beampipe.read_table(self.folder / name)
 
     def test_the_example_runs(self):
         found = subprocess.run([sys.executable, EXAMPLE, "out"], cwd=self.folder, capture_output=True, text=True,

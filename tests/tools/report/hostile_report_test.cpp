@@ -79,7 +79,7 @@ TEST_F(HostileReport, ConditionsAreThoseThatMakeSense) {
   };
   EXPECT_GT(conditions(R"("frames": [], "trace_frames": 0)").size(), 0u);
   EXPECT_THROW(conditions(R"("frames": [{"index": 0}], "trace_frames": 1)"), JsonError);
-  EXPECT_THROW(conditions(R"("made_by": {"command": 7})"), JsonError);
+  EXPECT_THROW(conditions(R"("command_line": 7)"), JsonError);
 }
 
 // The names of plots are names of files.

@@ -52,6 +52,35 @@ TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReferen
   EXPECT_EQ(plot.series[1].points[0].bound, PlotPoint::Bound::none);
 }
 
+TEST_F(PlotTest, SamplesOnChipTakeNoMemoryOnTheFrontier) {
+  std::string text = report_text("beam", 6, 100, 0.01, 50);
+  text.insert(1, R"("memory_system": {"modelled": true, "framebuffer": "on-chip"}, )");
+  const ScatterPlot plot = frontier_plot({read_report(make_report("a", text))});
+  for (const PlotPoint& rung : plot.series[0].points) EXPECT_EQ(rung.x, 6) << rung.label << ": the picture alone";
+}
+
+TEST_F(PlotTest, WithoutMemoryThereIsNoPoint) {
+  const ScatterPlot plot = storage_plot({read_report(make_report("a", report_text("own", 0, 100, 0.01, 50)))});
+  for (const PlotSeries& series : plot.series) EXPECT_NE(series.name, "own");
+  ASSERT_EQ(plot.notes.size(), 1u);
+  EXPECT_TRUE(plot.notes[0].starts_with("own is not drawn: ")) << plot.notes[0];
+}
+
+TEST_F(PlotTest, RatesByDifferentMetricsHaveNoMean) {
+  std::vector<ReportFile> reports;
+  for (const std::string metric : {"rmse", "psnr"}) {
+    std::string text = report_text("beam", 42, 4, 0.01, 50);
+    reports.push_back(read_report(make_report(metric, text.insert(1, "\"metric\": \"" + metric + "\", "))));
+  }
+  try {
+    frontier_plot(reports);
+    FAIL();
+  } catch (const ReportError& error) {
+    EXPECT_EQ(std::string(error.what()), (folder_ / "psnr").string() + ": expected equivalent rates by rmse, as in " +
+                                             (folder_ / "rmse").string() + ", found rates by psnr");
+  }
+}
+
 TEST_F(PlotTest, StorageIsAllMemoryOnChipAndOffChip) {
   const auto report = [&](const std::string& name, int bytes) {
     return read_report(make_report(

@@ -385,7 +385,7 @@ class ReportPage(PageTest):
         self.assertEqual(found["picture"], "96 × 54 pixels, 2 frames")
         [triangles] = {frame["triangles"] for frame in self.report["frames"]}
         self.assertEqual(found["scene"].replace("\u202f", ""), f"{triangles} triangles, 3 draws, 1 light")
-        self.assertEqual(found["command"], f"beampipe compare {self.trace} -t {' '.join(TECHNIQUES)} --ladder 1,8 --causes")
+        self.assertEqual(found["command"], f"beampipe compare {self.trace} -o {self.folder} {' '.join(self.command[1:])}")
         self.assertEqual(found["hardware"], "titan_v (Titan V class, 1455 MHz) save description")
         self.assertEqual(json.loads(self.browser.run("""const link = document.querySelector("#conditions a");
                                                         return link.download === "titan_v.json"

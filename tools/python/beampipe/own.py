@@ -32,7 +32,8 @@ class Merge:
       front   whether the front of the triangle is seen
 
     A cutout or translucent surface has less area and fewer positions. places: positions x 2, x to the right and y down
-    from the pixel's upper left corner, 0..1. All stages are counted but the rule itself, which may run in any thread.
+    from the pixel's upper left corner, 0..1. All stages are counted but the rule itself, whose cost is in no counter
+    and no modelled time. It may run in any thread.
     """
 
     def __init__(self, rule: Callable[[NDArray], ArrayLike], *, positions: int = 256, name: str = ""):
@@ -41,24 +42,37 @@ class Merge:
         if positions not in (32, 64, 128, 256):
             raise Error(f"positions: expected 32, 64, 128 or 256, found {positions}")
         self.rule, self.name, self.positions = rule, name or rendering.name_of(rule), positions
+        self.has_run = False  # for the note of program()
         self.places: NDArray[numpy.float64] = numpy.array(_native.places_of_positions(positions)) / 256
         self.technique = _native.merge_technique(self.name, self._merge, positions)
         self._record = numpy.dtype([("area", "f4"), ("depth", "f4"), ("plane", "f4", 3), ("front", "?"),
                                     ("color", "f4", 3), ("mask", "?", positions)])
 
-    def _merge(self, first: NDArray, *columns: NDArray) -> NDArray:
-        """The pixels of a bin; those from first[i] to first[i + 1] are the fragments of pixel i."""
+    def _merge(self, place: tuple[int, int, int, int], first: NDArray, *columns: NDArray) -> NDArray:
+        """The pixels of a bin at a place (frame, left, top, width). The fragments of pixel i are those from first[i] to
+        first[i + 1]."""
+        self.has_run = True
         fragments = numpy.empty(len(columns[0]), self._record)
         for key, column in zip(self._record.names, columns):
             fragments[key] = column
         merged = numpy.zeros((len(first) - 1, 4), numpy.float32)
         for pixel in numpy.flatnonzero(numpy.diff(first)):
-            found = numpy.asarray(self._merged(fragments[first[pixel]:first[pixel + 1]]), numpy.float32)
-            if found.shape != (4,) or not numpy.isfinite(found).all() or not -1e-3 <= found[3] <= 1.001:
-                raise Error(f"{self.name}: expected 4 finite numbers from the rule, R, G, B and A, and A from 0 to 1, "
-                            f"found {found}")
+            returned = self._merged(fragments[first[pixel]:first[pixel + 1]])
+            found = rendering.floats_of(returned)
+            if found.shape != (4,):
+                raise self._wrong(place, pixel, found.shape if found.size else type(returned).__name__)
             merged[pixel] = found
+        lowest = -1e-3 * numpy.maximum(1, merged.max(axis=1))  # rounding may lead to less than 0
+        right = numpy.isfinite(merged).all(axis=1) & (merged.min(axis=1) >= lowest) & (merged[:, 3] <= 1.001)
+        if not right.all():
+            raise self._wrong(place, numpy.argmin(right), merged[numpy.argmin(right)])
         return merged
+
+    def _wrong(self, place: tuple[int, int, int, int], pixel: int, found: Any) -> Error:
+        frame, left, top, width = place
+        at = f"frame {frame}, pixel ({left + pixel % width}, {top + pixel // width})"
+        return Error(f"{self.name}, {at}: expected 4 finite numbers from the rule, R, G and B from 0 and A from 0 to 1"
+                     f", found {found}")
 
     def _merged(self, fragments: NDArray) -> ArrayLike:
         try:
@@ -91,7 +105,7 @@ def _code_of(technique: AnyTechnique) -> tuple[str, str]:
 
 
 def _own_kind(technique: AnyTechnique) -> _native.OwnKind:
-    name = rendering.name_of(technique)
+    name = rendering.technique_name(technique)
     if isinstance(technique, str):
         raise Error(f"technique: expected a function, a Merge or a Pattern, found the spec {name}")
     if not re.fullmatch("[a-z][a-z0-9_]*", name):
@@ -116,9 +130,16 @@ def program(arguments: Iterable[Union[str, os.PathLike]], techniques: Iterable[A
     arguments: those of the command line, such as sys.argv[1:]. techniques: functions and patterns as for compare(), and
     Merge. A script that ends in sys.exit(beampipe.program(sys.argv[1:], [mine])) is a program of its own:
     `python3 script.py compare fence.json -t mine beam -o out`. Results of a script that has changed since are not taken
-    for those of this one. Call it from the main thread. Ctrl-C ends the process.
+    for those of this one. Where the rule of a Merge ran, a note on stderr says that its cost is left out. Call it from
+    the main thread. Ctrl-C ends the process.
     """
-    kinds = [_own_kind(each) for each in techniques]
+    own = list(techniques)
+    kinds = [_own_kind(each) for each in own]
     script = getattr(sys.modules["__main__"], "__file__", None)
     start = [sys.executable, os.path.abspath(script)] if script else []
-    return _native.program(["beampipe", *map(os.fspath, arguments)], start, kinds)
+    code = _native.program(["beampipe", *map(os.fspath, arguments)], start, kinds)
+    rules = ", ".join(each.name for each in own if isinstance(each, Merge) and each.has_run)
+    if rules and code == 0:
+        print(f"beampipe: note: {rules}: what the rule itself computes is in no counter and no modelled time",
+              file=sys.stderr)
+    return code

@@ -4,6 +4,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass, field
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Union
 
 import numpy
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 from ._native import Trace
-from .results import Error
+from .results import Error, expecting
 
 if TYPE_CHECKING:
     from .own import Merge
@@ -26,14 +27,14 @@ class Rendering:
     and name, as in report.json (`beampipe counters` explains them); operations are "ops.add" and so on. buffers: the
     most bytes that each held at once. on_chip_bytes_per_pixel, off_chip_bytes_per_pixel: as in report.json, all that a
     bin has on chip, and the framebuffer in memory with what triangles take beside it. times: modelled milliseconds by
-    implementation of the hardware: "in_turn", "on_cores", "at_once", and the "busiest" unit. Functions of the user's
-    count nothing.
+    implementation of the hardware: "in_turn", "on_cores", "at_once", and the "busiest" unit; none without the model of
+    memory. Functions of the user's count nothing.
     """
     technique: str
     frame: int
-    picture: NDArray[numpy.float32]
-    alpha: NDArray[numpy.float32]
-    counters: dict[str, NDArray[numpy.float32]] = field(default_factory=dict)
+    picture: NDArray[numpy.float32] = field(repr=False)
+    alpha: NDArray[numpy.float32] = field(repr=False)
+    counters: dict[str, NDArray[numpy.float32]] = field(default_factory=dict, repr=False)
     stages: dict[str, dict[str, int]] = field(default_factory=dict)
     buffers: dict[str, int] = field(default_factory=dict)
     on_chip_bytes_per_pixel: float = 0
@@ -110,11 +111,34 @@ def techniques() -> str:
 def name_of(technique: AnyTechnique) -> str:
     if isinstance(technique, str):
         return technique
-    if hasattr(technique, "render"):
+    is_class = isinstance(technique, type)  # Pattern in place of Pattern(...)
+    if hasattr(technique, "render") and not is_class:
         return technique.name
-    if callable(technique):
+    if callable(technique) and not is_class:
         return getattr(technique, "__name__", type(technique).__name__)
-    raise Error(f"technique: expected a spec, a Pattern, a Merge or a function, found {type(technique).__name__}")
+    found = f"the class {technique.__name__}" if is_class else type(technique).__name__
+    raise Error(f"technique: expected a spec, a Pattern, a Merge or a function, found {found}")
+
+
+def technique_name(technique: AnyTechnique) -> str:
+    """Its name; an error if it cannot be a technique."""
+    name = name_of(technique)
+    if not isinstance(technique, str) and not hasattr(technique, "render"):
+        try:
+            signature(technique).bind(None, 0)
+        except TypeError:
+            raise Error(f"{name}: expected a function of (trace, frame), or Merge(f) for a merge rule") from None
+        except ValueError:
+            pass  # a function of a compiled module, which does not tell its arguments
+    return name
+
+
+def floats_of(returned: Any) -> NDArray[numpy.float32]:
+    """What a function of the user's returned; empty if it is no array of numbers."""
+    try:
+        return numpy.asarray([] if returned is None else returned, numpy.float32)
+    except (TypeError, ValueError):
+        return numpy.empty(0, numpy.float32)
 
 
 def _render_native(technique: _native.Technique, trace: Trace, frame: int, *, threads: int, memory_model: bool,
@@ -126,19 +150,36 @@ def _render_native(technique: _native.Technique, trace: Trace, frame: int, *, th
 
 def _render_own(function: Callable, trace: Trace, frame: int) -> Rendering:
     name, (width, height) = name_of(function), trace.size(frame)
-    picture = numpy.asarray(function(trace, frame), numpy.float32)
+    returned = function(trace, frame)
+    picture = floats_of(returned)
     if picture.shape not in ((height, width, 3), (height, width, 4)):
-        raise Error(f"{name}: expected a picture of {height} x {width} x 3 or 4 numbers, found {picture.shape}")
+        found = picture.shape if picture.size else type(returned).__name__
+        raise Error(f"{name}: expected a picture of {height} x {width} x 3 or 4 numbers, found {found}")
+    for y, x in numpy.argwhere(~numpy.isfinite(picture).all(axis=2))[:1]:
+        raise Error(f"{name}, frame {frame}, pixel ({x}, {y}): expected finite numbers, found {picture[y, x]}")
     alpha = picture[..., 3].copy() if picture.shape[2] == 4 else numpy.ones((height, width), numpy.float32)
     return Rendering(name, frame, numpy.ascontiguousarray(picture[..., :3]), alpha)
 
 
 def _frames(frames: Union[int, Iterable[int], None], trace: Trace) -> list[int]:
-    chosen = list(range(trace.frames)) if frames is None else [frames] if isinstance(frames, int) else list(frames)
+    if frames is None:
+        return list(range(trace.frames))
+    chosen = list(frames) if isinstance(frames, Iterable) else [frames]
     for frame in chosen:
-        if not 0 <= frame < trace.frames:
+        if frame not in range(trace.frames):
             raise Error(f"{trace.name}: expected frames from 0 to {trace.frames - 1}, found {frame}")
-    return chosen
+    return [int(frame) for frame in chosen]
+
+
+def _require_trace(trace: Trace) -> None:
+    if not isinstance(trace, Trace):
+        raise Error(f"trace: expected a Trace, as open_trace() returns it, found {type(trace).__name__}")
+
+
+def resized(trace: Trace, width: int, height: int) -> Trace:
+    _require_trace(trace)
+    with expecting(f"width and height: expected whole numbers from 0, found {width} and {height}"):
+        return trace.resized(width, height)
 
 
 def render_frames(trace: Trace, technique: AnyTechnique, frames: list[int], *, threads: int = 0,
@@ -160,19 +201,20 @@ def render(trace: Trace, technique: AnyTechnique, *, frames: Union[int, Iterable
     """Renders a frame, or, as a list, several (None: all), with which techniques over time keep their history.
 
     technique: a spec ("beam", "msaa:8"), a Pattern, or a function of (trace, frame) that returns height x width x 3 or
-    4 linear values. Options of a spec may be keywords: render(trace, "beam", pool=60). width, height: pixels; 0: as the
-    trace says, or in proportion to the other. threads: 0: one per core; results do not depend on it. memory_model:
-    count what moves through caches and DRAM. hardware: a built-in name or a description's file.
+    4 finite, linear values. Options of a spec may be keywords: render(trace, "beam", pool=60). width, height: pixels;
+    0: as the trace says, or in proportion to the other. threads: 0: one per core; results do not depend on it.
+    memory_model: count what moves through caches and DRAM, and model times. hardware: a built-in name or a
+    description's file. Unless told otherwise, compare() renders all frames without that model, and this one frame with.
     """
-    name_of(technique)  # or it is none
+    technique_name(technique)  # or it is none
     if options:
         if not isinstance(technique, str):
             raise Error(f"{name_of(technique)}: expected no options, found {', '.join(options)}")
         technique = spec(technique, **options)
-    trace = trace.resized(width, height)
+    trace = resized(trace, width, height)
     found = render_frames(trace, technique, _frames(frames, trace), threads=threads, memory_model=memory_model,
                           hardware=hardware)
-    return found[0] if isinstance(frames, int) else found
+    return found if frames is None or isinstance(frames, Iterable) else found[0]
 
 
 def reference(trace: Trace, *, frames: Union[int, Iterable[int], None] = 0, width: int = 0, height: int = 0,
@@ -195,9 +237,8 @@ class Inspection(dict):
 def inspect(trace: Trace, technique: str, x: int, y: int, *, frame: int = 0, threads: int = 0,
             **options: Any) -> Inspection:
     """What happened in pixel (x, y), which counts from the upper left one, and why it is wrong."""
+    _require_trace(trace)
     native = _native.Technique(spec(technique, **options))
-    try:
+    with expecting(f"pixel {x},{y}, frame {frame}: expected whole numbers from 0"):
         text = _native.inspect(trace, native, x, y, frame, threads)
-    except TypeError:
-        raise Error(f"pixel {x},{y}: expected x and y from 0") from None
     return Inspection(json.loads(text[0]), text[1])

@@ -1,6 +1,7 @@
 """Reads what the program beampipe writes: reports, pictures and counters, and tables of sweeps. Needs numpy alone."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import dataclasses
 import json
@@ -16,6 +17,15 @@ import numpy
 
 class Error(Exception):
     """One line: the file, and what is wrong with it."""
+
+
+@contextlib.contextmanager
+def expecting(what: str) -> Iterator[None]:
+    """Says this in place of the compiled module's errors, many lines of types, where a type of an argument is wrong."""
+    try:
+        yield
+    except TypeError:
+        raise Error(what) from None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -113,10 +123,13 @@ def _unzip(block, size):
 
 def read_exr(file):
     """The channels of a scanline picture whose data window is the whole picture, uncompressed or with ZIP compression."""
-    data = pathlib.Path(file).read_bytes()
+    try:
+        data = pathlib.Path(file).read_bytes()
+    except FileNotFoundError:
+        raise Error(f"{file}: expected an EXR file, found none") from None
     try:
         return _read_exr(data)
-    except (Error, ValueError, IndexError, struct.error, zlib.error, UnicodeDecodeError) as error:
+    except (Error, ValueError, LookupError, struct.error, zlib.error, UnicodeDecodeError) as error:
         raise Error(f"{file}: expected an EXR file as beampipe writes it: {error}") from None
 
 
@@ -184,6 +197,9 @@ class Report:
     def __len__(self):
         return len(self._results)
 
+    def __repr__(self):
+        return f"Report({str(self.folder)!r}) of {', '.join(self._results)}"
+
     def __getitem__(self, technique):
         if technique not in self._results:
             raise Error(f"{self.folder}: expected one of the techniques {', '.join(self._results)}, found {technique}")
@@ -202,6 +218,12 @@ class Report:
     def frames(self, technique):
         return self[technique]["frames"]
 
+    def _frame(self, technique, frame):
+        frames = self.frames(technique)
+        if frame not in range(len(frames)):
+            raise Error(f"{self.folder}: expected a frame from 0 to {len(frames) - 1}, found {frame}")
+        return frames[frame]
+
     def stages(self, technique):
         """Counters by stage and name, summed over the frames. Those of operations are named "ops.add" and so on."""
         sums = {}
@@ -217,34 +239,48 @@ class Report:
 
     def picture(self, technique, frame=0):
         """Linear RGBA of a frame (counted from 0 within the report): height x width x 4."""
-        exr = read_exr(self.folder / self.frames(technique)[frame]["image"])
+        exr = read_exr(self.folder / self._frame(technique, frame)["image"])
         return numpy.stack([exr[name] for name in "RGBA"], axis=-1)
 
     def counters(self, technique, frame=0):
         """What was counted for each pixel of a frame, by name; none if nothing was."""
-        file = self.frames(technique)[frame].get("counters")
+        file = self._frame(technique, frame).get("counters")
         return read_exr(self.folder / file) if file else Exr({})
 
 
 def _column(values):
-    """An array of numbers (NaN where there is none), or of texts."""
+    """An array of integers, of numbers (NaN where there is none), or of texts."""
+    with contextlib.suppress(ValueError, OverflowError):
+        return numpy.array([int(str(value)) for value in values], numpy.int64)
     try:
         return numpy.array([float(value) if value not in (None, "") else numpy.nan for value in values])
     except ValueError:
         return numpy.array([str(value) for value in values])
 
 
+def _table(file):
+    """The names of its columns, and its rows."""
+    if file.suffix == ".sqlite":
+        with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
+            tables = "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY rowid"
+            (name,), *_ = database.execute(tables).fetchall()
+            cursor = database.execute(f'SELECT * FROM "{name}"')
+            return [column[0] for column in cursor.description], cursor.fetchall()
+    with open(file, newline="", encoding="utf-8") as stream:
+        names, *rows = csv.reader(stream)
+    if names[0].startswith(("{", "[")) or any(len(row) != len(names) for row in rows):  # JSON, for example
+        raise ValueError
+    return names, rows
+
+
 def read_table(file):
-    """The columns of a table by name, from CSV (also those of `beampipe report`) or SQLite (the first table)."""
+    """The columns of a table by name, from CSV (also those of `beampipe report`) or SQLite (the first table). Columns
+    are arrays of integers, of numbers (NaN where there is none), or of texts."""
     file = pathlib.Path(file)
     if not file.is_file():
         raise Error(f"{file}: expected a table, found no file")
-    if file.suffix == ".sqlite":
-        with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
-            name, = database.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY rowid").fetchone()
-            cursor = database.execute(f'SELECT * FROM "{name}"')
-            names, rows = [column[0] for column in cursor.description], cursor.fetchall()
-    else:
-        with open(file, newline="", encoding="utf-8") as stream:
-            names, *rows = csv.reader(stream)
+    try:
+        names, rows = _table(file)
+    except (ValueError, IndexError, csv.Error, sqlite3.Error):
+        raise Error(f"{file}: expected a table, CSV or SQLite (.sqlite)") from None
     return {name: _column([row[i] for row in rows]) for i, name in enumerate(names)}

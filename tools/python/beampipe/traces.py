@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _native
 from ._native import Trace
-from .results import Error
+from .results import Error, expecting
 
 DEFAULT_COLOR = 0.8  # grey, linear
 
@@ -21,7 +21,9 @@ def make(scene: str, *, triangles: int = 0, seed: int = 1, width: int = 320, hei
     triangles: about as many; 0: the scene's own number. width, height: pixels. Of several frames, the camera turns by
     `orbit` degrees in all, or the picture moves by `pan` pixels (right, down) from each to the next.
     """
-    return _native.make(scene, triangles, seed, width, height, frames, orbit, pan)
+    with expecting("make: expected whole numbers from 0 for triangles, seed, width, height and frames, and numbers for "
+                   "orbit and pan"):
+        return _native.make(scene, triangles, seed, width, height, frames, orbit, pan)
 
 
 def scenes() -> list[str]:

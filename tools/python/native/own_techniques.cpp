@@ -59,8 +59,9 @@ Technique function_technique(const std::string& name, const SharedFunction& func
   return technique;
 }
 
-// What a rule is given: columns of all fragments of a bin, and where each pixel's begin.
-py::tuple columns_of(const std::vector<Fragment>& fragments, const ABuffer& lists, int positions) {
+// What a rule is given: the bin's place, columns of all its fragments, and where each pixel's begin.
+py::tuple columns_of(const std::vector<Fragment>& fragments, const ABuffer& lists, int positions, std::size_t frame,
+                     const Tile& tile) {
   const auto count = static_cast<py::ssize_t>(lists.records.size()), bits = static_cast<py::ssize_t>(positions);
   py::array_t<std::uint32_t> first(static_cast<py::ssize_t>(lists.first.size()));
   std::ranges::copy(lists.first, first.mutable_data());
@@ -79,7 +80,8 @@ py::tuple columns_of(const std::vector<Fragment>& fragments, const ABuffer& list
     for (py::ssize_t bit = 0; bit < bits; ++bit)
       mask.mutable_at(i, bit) = fragment.mask.test(static_cast<std::size_t>(bit));
   }
-  return py::make_tuple(first, area, depth, plane, front, color, mask);
+  return py::make_tuple(py::make_tuple(frame, tile.x0, tile.y0, tile.width()), first, area, depth, plane, front, color,
+                        mask);
 }
 
 // The colours that the rule returns: one row for each pixel of the bin, R, G and B times A, and A.
@@ -94,7 +96,7 @@ std::vector<PixelColor> colors_of(const FloatArray& merged) {
 constexpr std::uint32_t kStoredFragmentBytes = 64;  // with up to 256 positions: area, plane, colour, mask
 constexpr std::uint32_t kMergedBytes = 8;           // of the framebuffer
 
-FrameResult render_merged(const FrameJob& job, const Framebuffer& framebuffer, int positions,
+FrameResult render_merged(const FrameJob& job, std::size_t frame, const Framebuffer& framebuffer, int positions,
                           const SharedFunction& rule) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionGrid grid(positions);
@@ -117,13 +119,14 @@ FrameResult render_merged(const FrameJob& job, const Framebuffer& framebuffer, i
     const BinStage composition = bin.stage(StageId::compose);  // the rule; what it computes is not counted
     composition.counters.items_in += lists.records.size();
     a_buffer.charge_memory(record_counts(lists), composition);
-    const std::vector<PixelColor> colors = rule([&] { return columns_of(fragments, lists, positions); },
-                                                [](const py::object& merged) { return colors_of(FloatArray(merged)); });
+    const std::vector<PixelColor> colors =
+        rule([&] { return columns_of(fragments, lists, positions, frame, bin.tile); },
+             [](const py::object& merged) { return colors_of(FloatArray(merged)); });
     bin.finish(resolve(colors, bin.background(), kMergedBytes, bin.stage(StageId::resolve).timed()));
   });
 }
 
-// rule(first, area, depth, plane, front, color, mask) is called for each bin (own.py explains the columns).
+// rule(place, first, area, depth, plane, front, color, mask) is called for each bin (own.py explains the columns).
 Technique merge_technique(const std::string& name, const SharedFunction& rule, int positions) {
   Technique technique;
   technique.spec = name;
@@ -132,7 +135,7 @@ Technique merge_technique(const std::string& name, const SharedFunction& rule, i
   technique.renderer = [framebuffer = technique.framebuffer, positions, rule](
                            const Trace& trace, std::size_t frame, const FrameInput& run, const FrameSinks& sinks) {
     const FrameJob job{trace, trace.frames.at(frame), run, sinks};
-    return on_threads(run.threads, [&] { return render_merged(job, framebuffer, positions, rule); });
+    return on_threads(run.threads, [&] { return render_merged(job, frame, framebuffer, positions, rule); });
   };
   return technique;
 }
