@@ -289,7 +289,7 @@ SpecOptions casav_options(CasavOptions& o) {
 TechniqueKind casav_kind() {
   return {.name = "casav",
           .description =
-              "correlation-aware semi-analytic visibility, the pipeline of the paper: a 32-bit mask from a table, "
+              "correlation-aware semi-analytic visibility, as its paper has it: a 32-bit mask from a table, "
               "and one aggregate with a depth slab per pixel; the options are other readings of the paper",
           .source = "Crassin et al. 2018",
           .examples = {"casav", "casav:mask=exact", "casav:storage=text", "casav:reading=literal",

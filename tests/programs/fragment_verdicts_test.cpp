@@ -236,11 +236,15 @@ TEST(FragmentVerdicts, DepthOfShadersIsLimited) {
   near.expect_all(kGreenColor);
 }
 
+// With alpha to coverage, what the shader says is asked for.
 TEST(FragmentVerdicts, EarlyTestsIgnoreTheDepthOfShaders) {
-  Scene scene;
-  scene.add(kPlain, 0.5f, kGreen);
-  scene.add(with_modes(kDepth, kEarly), 0.25f, {1, 1, 0.75f, 1});
-  scene.expect_all(kYellowColor);
+  for (const bool has_coverage : {false, true}) {
+    Scene scene;
+    scene.add(kPlain, 0.5f, kGreen);
+    scene.add(with_modes(kDepth, kEarly), 0.25f, {1, 1, 0.75f, 1}).state.alpha_to_coverage = has_coverage;
+    scene.add(kPlain, 0.375f, kGreen);  // behind what is stored
+    scene.expect_all(kYellowColor);
+  }
 }
 
 // ---- Samples ----

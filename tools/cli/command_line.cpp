@@ -107,12 +107,12 @@ Option& Option::one_of(const std::vector<std::string>& choices) {
   return *this;
 }
 
-Option& Option::bytes(std::uint64_t low, std::uint64_t high) {
+Option& Option::bytes(std::uint64_t low, std::uint64_t high, const std::string& example) {
   option_->transform(CLI::AsSizeValue(false).description(""));
-  const auto refusal = [low, high](const std::string& found) -> std::string {
+  const auto refusal = [low, high, example](const std::string& found) -> std::string {
     if (CLI::Range(low, high)(found).empty()) return "";
-    return "expected " + std::to_string(low) + " to " + std::to_string(high) + " bytes, such as " +
-           (low <= 65536 ? "64KB" : "512MB") + ", found " + found;
+    return "expected " + std::to_string(low) + " to " + std::to_string(high) + " bytes, such as " + example +
+           ", found " + found;
   };
   option_->check(CLI::Validator(refusal, ""))->type_name("SIZE");
   return *this;

@@ -30,7 +30,8 @@ class Option {
   Option& required();
   Option& between(std::uint64_t low, std::uint64_t high);   // both included
   Option& one_of(const std::vector<std::string>& choices);  // in small or capital letters
-  Option& bytes(std::uint64_t low, std::uint64_t high);     // likewise; takes units too: 512MB, 2GB
+  // Likewise; takes units too: 512MB, 2GB. `example`: for the error.
+  Option& bytes(std::uint64_t low, std::uint64_t high, const std::string& example);
   Option& exactly(int values, const std::string& form);     // one word with commas: --eye 1,2,3
   Option& list(const std::string& form);                    // likewise, with any number of values
   Option& shows_default();                                  // --help prints the variable's value

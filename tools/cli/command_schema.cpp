@@ -24,7 +24,8 @@ constexpr NamedSchema kSchemas[] = {{"trace", trace_schema},   {"hardware", hard
 }  // namespace
 
 void add_schema_command(CommandLine& line) {
-  Command command = line.add_command("schema", "Print the JSON Schema of a kind of file");
+  Command command =
+      line.add_command("schema", "Print the JSON Schema of a kind of file, or a description of hardware to start from");
   const auto name = std::make_shared<std::string>();
   std::vector<std::string> names;
   for (const NamedSchema& each : kSchemas) names.push_back(each.name);

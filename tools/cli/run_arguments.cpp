@@ -88,7 +88,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .add("--memory-limit", arguments.memory_limit,
            "the most memory for data of triangles and pixels, such as 512MB; larger frames are rendered in bands, with "
            "the same results (default: half of the machine's memory)")
-      .bytes(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
+      .bytes(std::uint64_t{1} << 20, std::uint64_t{1} << 50, "512MB");
   command
       .add("--repeat", arguments.repeat,
            "render each frame N times and report the median time (default: 1); above 1, memory is modelled in one "
@@ -121,7 +121,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
            "what a core has on chip for the pixels of bins, such as 64KB, at least 1KB, in place of what the hardware "
            "has. Bins are made so small that as many fit as a core works on; if not even one of 8 x 8 fits, pixels are "
            "in memory")
-      .bytes(1024, std::uint64_t{1} << 31);
+      .bytes(1024, std::uint64_t{1} << 31, "64KB");
   command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");
 }
 

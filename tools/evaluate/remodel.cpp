@@ -10,12 +10,12 @@ const std::string kFile = "report.json";
 
 }  // namespace
 
-MemoryParameters memory_of(const Json& report) {
+MemoryParameters memory_of(const Json& report, const std::string& file) {
   Json named = Json::object();
   MemoryParameters memory;
   for (const auto& [key, value] : report.at("memory_system").members())
     if (key != "modelled") named[key] = value;
-  set_parameters(memory, JsonCursor(named, kFile));
+  set_parameters(memory, JsonCursor(named, file));
   memory.modelled = report.at("memory_system").at("modelled").get<bool>();
   return memory;
 }
@@ -42,7 +42,7 @@ Report remodelled(const Json& json, const Hardware* other) {
   Report report;
   report.trace = json.at("trace").get<std::string>();
   report.made_by = json.value("made_by", Json());
-  report.memory = memory_of(json);
+  report.memory = memory_of(json, kFile);
   report.hardware = hardware_of(json);
   if (other) {
     const auto difference =

@@ -14,8 +14,9 @@ struct OtherMemory : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The memory system of report.json. Throws JsonError or TraceError if `report` is something else.
-MemoryParameters memory_of(const Json& report);
+// The memory system of report.json. `file`: its name for errors. Throws JsonError or TraceError if `report` is something
+// else.
+MemoryParameters memory_of(const Json& report, const std::string& file);
 
 // Of report.json: trace, what made it, memory system, hardware, and the stages, buffers and bins of every technique's
 // frames. The hardware is `other`, or, if that is null, the report's own. Options of the run that changed the memory

@@ -87,6 +87,19 @@ void make_line(PlotSeries& series) {
       series.points[i].label = pool;
 }
 
+// Of reports that have equivalent rates: others have no metric.
+void require_one_metric(const std::vector<ReportFile>& reports) {
+  const ReportFile* first = nullptr;
+  for (const ReportFile& report : reports) {
+    const std::string metric = report.json.value("metric", std::string());
+    if (metric.empty()) continue;
+    if (!first) first = &report;
+    if (const std::string wanted = first->json.at("metric").get<std::string>(); metric != wanted)
+      throw ReportError(report.folder.string() + ": expected equivalent rates by " + wanted + ", as in " +
+                        first->folder.string() + ", found rates by " + metric);
+  }
+}
+
 [[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
   throw ReportError((reports.front().folder / "report.json").string() +
                     ": it has no errors; expected a report of `beampipe compare`, or --kind traffic for one of `run`");
@@ -95,6 +108,7 @@ void make_line(PlotSeries& series) {
 }  // namespace
 
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
+  require_one_metric(reports);
   ScatterPlot plot{.name = "frontier",
                    .title = "Memory and accuracy: " + scenes_text(reports),
                    .x_label = "memory with the A-buffer, bytes per pixel",
@@ -119,18 +133,21 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
 }
 
 ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
+  require_one_metric(reports);
   ScatterPlot plot{.name = "storage",
                    .title = "All memory and accuracy: " + scenes_text(reports),
                    .x_label = "memory on chip and off chip, with the A-buffer, bytes per pixel",
                    .y_label = kEmrLabel,
                    .series = {msaa_line()}};
+  bool compared = false;
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
+    compared = true;
     const std::string series = is_msaa(summary.spec) ? kMsaaName : split_pool(summary.spec).first;
     add_point(plot, reports, series, summary.spec,
               {summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }
-  if (plot.series.size() == 1 && plot.series.front().points.empty()) throw_not_compared(reports);
+  if (!compared) throw_not_compared(reports);
   for (PlotSeries& series : plot.series)
     if (series.points.size() > 1) make_line(series);
   return plot;

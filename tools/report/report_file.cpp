@@ -231,7 +231,7 @@ ReportFile read_report(const std::filesystem::path& folder) {
   report.json = parse_json(file.string());
   read_from_report(folder, [&] {
     if (report.json.at("beampipe_report") != 2) throw JsonError("its beampipe_report is not 2");
-    if (report.json.contains("memory_system")) report.memory = memory_of(report.json);
+    if (report.json.contains("memory_system")) report.memory = memory_of(report.json, file.string());
     report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
     for (const Json& result : report.json.at("results").elements()) {
       TechniqueSummary summary = read_summary(result);
@@ -246,12 +246,6 @@ ReportFile read_report(const std::filesystem::path& folder) {
   return report;
 }
 
-namespace {
-
-std::string metric_of(const ReportFile& report) { return report.json.value("metric", std::string("no metric")); }
-
-}  // namespace
-
 std::vector<TechniqueSummary> mean_summaries(const std::vector<ReportFile>& reports) {
   if (reports.empty()) throw std::invalid_argument("no report to take means of");
   std::map<std::string, std::vector<TechniqueSummary>> by_spec;
@@ -263,10 +257,6 @@ std::vector<TechniqueSummary> mean_summaries(const std::vector<ReportFile>& repo
     const std::vector<TechniqueSummary>& all = by_spec.at(summary.spec);
     if (all.size() == reports.size()) means.push_back(mean_summary(all));
   }
-  for (const ReportFile& report : reports)
-    if (const std::string metric = metric_of(report), first = metric_of(reports.front()); metric != first)
-      throw ReportError(report.folder.string() + ": expected equivalent rates by " + first + ", as in " +
-                        reports.front().folder.string() + ", found rates by " + metric);
   if (means.empty()) {
     throw ReportError(reports.front().folder.string() + " and the other folders have no technique in common");
   }

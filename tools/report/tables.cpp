@@ -1,7 +1,9 @@
 #include "tools/report/tables.h"
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
+#include <cmath>
 #include <map>
 
 #include "pipeline/technique.h"
@@ -349,12 +351,15 @@ void add_room(const ReportFile& report, const Json& result, Json& record) {
   record["dram_geometry_bytes"] = geometry / static_cast<double>(frames.size());
 }
 
+// In memory, of MSAA with so many samples. On chip, the picture alone is in memory.
+double msaa_bytes(double samples, const MemoryParameters& memory) {
+  const std::uint32_t rung = std::bit_ceil(static_cast<std::uint32_t>(std::clamp(std::ceil(samples), 1.0, 1024.0)));
+  const Technique msaa = parse_technique(msaa_spec(rung));
+  const double in_memory = msaa.framebuffer_bytes_per_pixel(), here = msaa.framebuffer_bytes_per_pixel(memory);
+  return here < in_memory ? here : in_memory * samples / rung;
+}
+
 std::vector<Json> technique_records(const ReportFile& report) {
-  // Of msaa:1, and of each sample more: nothing if the samples are on chip.
-  const auto bytes_of = [&](std::uint32_t samples) {
-    return static_cast<double>(parse_technique(msaa_spec(samples)).framebuffer_bytes_per_pixel(report.memory));
-  };
-  const double msaa_bytes = bytes_of(1), sample_bytes = bytes_of(2) - msaa_bytes;
   std::vector<Json> records;
   for (const Json& result : report.json.at("results").elements()) {
     Json record = result;
@@ -381,7 +386,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
       if (const auto emr = read_emr(*visibility)) record["visibility"]["emr_bound"] = bound_text(*emr);
     if (summary.emr) {
       record["emr_bound"] = bound_text(*summary.emr);
-      record["msaa_bytes_per_pixel"] = msaa_bytes + (summary.emr->samples - 1) * sample_bytes;
+      record["msaa_bytes_per_pixel"] = msaa_bytes(summary.emr->samples, report.memory);
     }
     records.push_back(std::move(record));
   }

@@ -132,8 +132,7 @@ constexpr OperationCounts color_sums(std::uint64_t addends) {
 //  - what it is, as a threshold;
 //  - its exact area: a sum, a limit, a division; the area of what is final already;
 //  - of its visible area (simd/conserve.h) the fraction, its own error (a division, a difference), that of what is
-//  taken (the
-//    same), the free positions (a difference, a limit), its share of them (a division, and a choice by a
+//    taken (the same), the free positions (a difference, a limit), its share of them (a division, and a choice by a
 //    comparison), the estimate (a division, three products, a sum, a difference), and three limits, of which one is a
 //    difference;
 //  - by positions: a division; the products of both with three channels;
@@ -338,8 +337,7 @@ TEST(PooledCosts, SurfacesOfAPixel) {
             kTake * 3 + kPlane + kBounds + kVertices,
         kWhole + 2 * kBitPlane + 6 * kLink + 3 * kOwner + kBoundedOwner, kLink + kWord}},
       {"a speck in front of three: six words of planes; the owners of three positions; a chunk for the sums, where "
-       "nothing "
-       "is final, with the nearest depth",
+       "nothing is final, with the nearest depth",
        {0, 1, 2},
        4,
        {kComparison + votes(2) + kPlane * 3 + kSpeckTest * 3 + kSpeckSeen + kComparison + kSpeckAdded,

@@ -23,6 +23,14 @@ std::size_t count_starts(const std::vector<std::string>& lines, const std::strin
       std::ranges::count_if(lines, [&](const std::string& line) { return line.starts_with(start); }));
 }
 
+// 448.7 bytes a clock are 653 GB/s; the description has 30 rates, 12 of them with ranges.
+TEST_F(ModelText, TheTitleHasWhatWrongUnitsWouldChange) {
+  EXPECT_EQ(count_starts(lines_of({}),
+                         "modelled ms on titan_v (Titan V class): 80 cores at 1455 MHz, 96 KiB on chip "
+                         "each, DRAM 653 GB/s; 12 of 30 rates have a range"),
+            1u);
+}
+
 // Both implementations of a Titan V draw msaa alike; those of `beam` differ.
 TEST_F(ModelText, ImplementationsThatAgreeAreOneRow) {
   const auto times = lines_of({"--energy"});

@@ -326,7 +326,7 @@ class Merges(unittest.TestCase):
             beampipe.render(trace, beampipe.Merge(lambda fragments: 1 / 0))
         for returned, expected in (([1, 1, 1], r"\(3,\)"), (None, "NoneType"), ("rgba", "str"),
                                    ([0, 0, 0, 2], r"\[0. 0. 0. 2.\]"), ([0, math.nan, 0, 1], r"\[ 0. nan  0.  1.\]"),
-                                   ([-1, 0, 0, 1], r"\[-1.  0.  0.  1.\]"),
+                                   ([-1, 0, 0, 1], r"\[-1.  0.  0.  1.\]"), ([1000, 0, 0, -0.9], r"\[.*-9.*e-01\]"),
                                    ([0, 0, 0, -0.5], r"\[ 0.   0.   0.  -0.5\]")):
             def rule(fragments):
                 return returned if fragments["area"][0] < 1 else [0, 0, 0, 1]

@@ -3,6 +3,7 @@
 #include "pipeline/error_causes.h"
 #include "stages/cost/stage.h"
 #include "tests/tools/fixtures.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/files/image_io.h"
 #include "tools/report/cards.h"
 #include "tools/report/colors.h"
@@ -119,6 +120,16 @@ TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
                 {"msaa_bytes_per_pixel", 80.0}});
   // No hardware is modelled for the reference, and it has no error.
   expect_cells(techniques, 1, {{"modelled_ms_shaders_at_once", nullptr}, {"rmse", nullptr}});
+}
+
+// EMR 8: with 96 KiB its samples fit on chip, with 4 KiB they do not.
+TEST_F(ReportParts, AsMuchAsMsaaTakesWhereItsSamplesAre) {
+  for (const auto& [bytes, expected] : {std::pair{98304, 6.0}, {4096, 80.0}}) {
+    Json memory = parameters_json({});
+    memory["modelled"] = false, memory["framebuffer"] = "on-chip", memory["on_chip_bytes"] = bytes;
+    const ReportFile report = read(replaced(kReport, R"({"modelled": false, "cores": 2})", memory.dump()));
+    expect_cells(named(report_tables(report), "techniques"), 0, {{"msaa_bytes_per_pixel", expected}});
+  }
 }
 
 TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from operator import index
 from typing import Callable, Iterable, Iterator, Optional, Sequence, Union
 
 import numpy
@@ -140,8 +141,13 @@ def compare(trace: Trace, techniques: Iterable[AnyTechnique], *, metric: AnyMetr
         _native.Technique(f"msaa:{n}")  # or an error before anything is rendered
     trace = rendering.resized(trace, width, height)
     chosen = rendering._frames(frames, trace)
+    if not chosen:
+        raise Error("frames: expected at least one, found none")
+    wrong = f"measure_from: expected a number from 0 to {len(chosen) - 1}, found {measure_from}"
+    with rendering.expecting(wrong):
+        measure_from = index(measure_from)
     if measure_from not in range(len(chosen)):
-        raise Error(f"measure_from: expected a number from 0 to {len(chosen) - 1}, found {measure_from}")
+        raise Error(wrong)
 
     def rendered(technique: AnyTechnique, models: bool = False) -> list[Rendering]:
         keeps_history = isinstance(technique, str) and _native.Technique(technique).keeps_history

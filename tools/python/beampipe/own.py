@@ -60,10 +60,11 @@ class Merge:
             returned = self._merged(fragments[first[pixel]:first[pixel + 1]])
             found = rendering.floats_of(returned)
             if found.shape != (4,):
-                raise self._wrong(place, pixel, found.shape if found.size else type(returned).__name__)
+                raise self._wrong(place, pixel, found.shape if found.ndim and found.size else type(returned).__name__)
             merged[pixel] = found
-        lowest = -1e-3 * numpy.maximum(1, merged.max(axis=1))  # rounding may lead to less than 0
-        right = numpy.isfinite(merged).all(axis=1) & (merged.min(axis=1) >= lowest) & (merged[:, 3] <= 1.001)
+        color, alpha = merged[:, :3], merged[:, 3]
+        lowest = -1e-3 * numpy.maximum(1, color.max(axis=1))  # rounding may lead to less than 0
+        right = numpy.isfinite(merged).all(axis=1) & (color.min(axis=1) >= lowest) & (abs(alpha - 0.5) <= 0.501)
         if not right.all():
             raise self._wrong(place, numpy.argmin(right), merged[numpy.argmin(right)])
         return merged
@@ -137,6 +138,9 @@ def program(arguments: Iterable[Union[str, os.PathLike]], techniques: Iterable[A
     kinds = [_own_kind(each) for each in own]
     script = getattr(sys.modules["__main__"], "__file__", None)
     start = [sys.executable, os.path.abspath(script)] if script else []
+    for each in own:
+        if isinstance(each, Merge):
+            each.has_run = False
     code = _native.program(["beampipe", *map(os.fspath, arguments)], start, kinds)
     rules = ", ".join(each.name for each in own if isinstance(each, Merge) and each.has_run)
     if rules and code == 0:

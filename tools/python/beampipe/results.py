@@ -5,6 +5,7 @@ import contextlib
 import csv
 import dataclasses
 import json
+import operator
 import pathlib
 import re
 import sqlite3
@@ -220,6 +221,8 @@ class Report:
 
     def _frame(self, technique, frame):
         frames = self.frames(technique)
+        with expecting(f"{self.folder}: expected a whole number as a frame, found {frame}"):
+            frame = operator.index(frame)
         if frame not in range(len(frames)):
             raise Error(f"{self.folder}: expected a frame from 0 to {len(frames) - 1}, found {frame}")
         return frames[frame]
@@ -267,7 +270,7 @@ def _table(file):
             cursor = database.execute(f'SELECT * FROM "{name}"')
             return [column[0] for column in cursor.description], cursor.fetchall()
     with open(file, newline="", encoding="utf-8") as stream:
-        names, *rows = csv.reader(stream)
+        names, *rows = (row for row in csv.reader(stream) if row)
     if names[0].startswith(("{", "[")) or any(len(row) != len(names) for row in rows):  # JSON, for example
         raise ValueError
     return names, rows
