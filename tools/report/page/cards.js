@@ -20,7 +20,7 @@ function cardRows(card, implementation) {
     ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes, "bytes on chip")} per bin of ${numberText(card.bin_pixels)} pixels`,
       `pixels are ${card.pixels_on_chip ? "on chip" : "in memory"}`]],
     ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [card.off_chip]],
-    ["time", time?.at_once, (value) => `${shortText(value)} ms`,
+    ["time at once", time?.at_once, (value) => `${shortText(value)} ms`,
       time ? timeLines(time) : []],
     ["RMSE", card.rmse, shortText, []],
     ["EMR", card.emr, (value) => bound[card.emr_bound] + shortText(value), []],
