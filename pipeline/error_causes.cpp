@@ -177,7 +177,7 @@ class TileExplainer {
         truth_(bin.tile) {
     if (!is_by_depth_) return;
     StageCounters unused;
-    reference_raster(context.triangles, bin.list, tile_, unused, truth_, &shader_);
+    reference_raster({context.triangles, bin.list, tile_}, unused, truth_, &shader_);
     layers_ = layers_of_pixels(truth_, tile_);
     std::vector<Pair> pairs;
     conservative_raster(context.triangles, bin.list, tile_, unused, pairs);

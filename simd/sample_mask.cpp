@@ -1,6 +1,7 @@
 #include "simd/sample_mask.h"
 
 #include <bit>
+#include <span>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/sample_mask.cpp"
@@ -71,8 +72,8 @@ void sample_masks_kernel(const CellEdges* cells, std::size_t count, const Sample
 
 // Sets the bits of samples s, s + 1, ... in the masks of one triangle's cells.
 template <class D>
-HWY_INLINE void grid_masks(D d, const GridEdges& edges, const GridCell* cells, std::size_t count,
-                           const SamplePattern& pattern, std::size_t s, std::uint32_t* masks) {
+HWY_INLINE void grid_masks(D d, const GridEdges& edges, std::span<const GridCell> cells, const SamplePattern& pattern,
+                           std::size_t s, std::uint32_t* masks) {
   const hn::Rebind<std::int32_t, D> di;
   const auto x = hn::PromoteTo(d, hn::Load(di, pattern.x.data() + s));
   const auto y = hn::PromoteTo(d, hn::Load(di, pattern.y.data() + s));
@@ -80,7 +81,7 @@ HWY_INLINE void grid_masks(D d, const GridEdges& edges, const GridCell* cells, s
     return hn::Add(hn::Mul(hn::Set(d, edges.a[k]), x), hn::Mul(hn::Set(d, edges.b[k]), y));
   };
   const auto in_cell0 = in_cell(0), in_cell1 = in_cell(1), in_cell2 = in_cell(2);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
     const double column = cells[i].x, row = cells[i].y;
     const auto corner = [&](int k) {
       return hn::Set(d, edges.start[k] + edges.right[k] * column + edges.down[k] * row);
@@ -95,14 +96,14 @@ HWY_INLINE void grid_masks(D d, const GridEdges& edges, const GridCell* cells, s
 
 // As many lanes as the pattern has samples are enough.
 template <class D>
-HWY_INLINE std::uint64_t grid_masks(D d, const GridEdges* edges, const GridCell* cells, std::size_t count,
+HWY_INLINE std::uint64_t grid_masks(D d, const GridEdges* edges, std::span<const GridCell> cells,
                                     const SamplePattern& pattern, std::uint32_t* masks) {
-  const auto samples = static_cast<std::size_t>(pattern.count);
+  const std::size_t count = cells.size(), samples = static_cast<std::size_t>(pattern.count);
   for (std::size_t i = 0; i < count; ++i) masks[i] = 0;
   for (std::size_t first = 0, end = 0; first < count; first = end) {
     while (end < count && cells[end].edges == cells[first].edges) ++end;
     for (std::size_t s = 0; s < samples; s += hn::Lanes(d))
-      grid_masks(d, edges[cells[first].edges], cells + first, end - first, pattern, s, masks + first);
+      grid_masks(d, edges[cells[first].edges], cells.subspan(first, end - first), pattern, s, masks + first);
   }
   std::uint64_t covered = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -114,8 +115,9 @@ HWY_INLINE std::uint64_t grid_masks(D d, const GridEdges* edges, const GridCell*
 
 std::uint64_t grid_masks_kernel(const GridEdges* edges, const GridCell* cells, std::size_t count,
                                 const SamplePattern& pattern, std::uint32_t* masks) {
-  return pattern.count <= 4 ? grid_masks(hn::CappedTag<double, 4>(), edges, cells, count, pattern, masks)
-                            : grid_masks(hn::CappedTag<double, 8>(), edges, cells, count, pattern, masks);
+  const std::span all(cells, count);
+  return pattern.count <= 4 ? grid_masks(hn::CappedTag<double, 4>(), edges, all, pattern, masks)
+                            : grid_masks(hn::CappedTag<double, 8>(), edges, all, pattern, masks);
 }
 
 }  // namespace HWY_NAMESPACE

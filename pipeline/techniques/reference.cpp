@@ -46,9 +46,9 @@ FrameResult render_reference(const FrameJob& job, const ReferencePattern& patter
     ReferenceTile samples(bin.tile, pattern);
     const BinStage drawing = bin.stage(StageId::reference_raster);
     if (context.rop) {
-      ordered_reference(context.triangles, bin.list, bin.tile, *context.rop, shader, drawing.timed(), samples);
+      ordered_reference({context.triangles, bin.list, bin.tile}, *context.rop, shader, drawing.timed(), samples);
     } else {
-      reference_raster(context.triangles, bin.list, bin.tile, drawing.timed(), samples, &shader);
+      reference_raster({context.triangles, bin.list, bin.tile}, drawing.timed(), samples, &shader);
     }
     bin.finish(resolve(samples, bin.tile, shader, context.background, resolving.timed()));
   });

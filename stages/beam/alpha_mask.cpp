@@ -172,8 +172,8 @@ class AlphaMask {
   // By a single invocation, of what has not been discarded. Sets the fragment's depth.
   float judge(Fragment& fragment) {
     work.alphas += shader_.work(fragment.triangle).alpha;
-    const FragmentVerdict verdict = shader_.verdict(fragment.triangle, fragment.pixel, fragment.centroid_u,
-                                                    fragment.centroid_v, 1.0f, true, texels_);
+    const ShadingPlace centroid = shader_.place(fragment.pixel, fragment.centroid_u, fragment.centroid_v);
+    const FragmentVerdict verdict = shader_.verdict({fragment.triangle, centroid, 1.0f}, true, texels_);
     end_request(texels_);
     if (verdict.depth) {
       fragment.plane = {*verdict.depth, 0.0f, 0.0f};

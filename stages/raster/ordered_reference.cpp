@@ -248,11 +248,10 @@ class OrderedSamples {
 
 }  // namespace
 
-void ordered_reference(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                       const RopRules& rules, const TileShader& shader, StageCounters& counters,
-                       ReferenceTile& surface) {
-  OrderedSamples samples(triangles, rules, shader, tile, surface);
-  for (const std::uint32_t index : list) samples.draw(index);
+void ordered_reference(const ListedTriangles& drawn, const RopRules& rules, const TileShader& shader,
+                       StageCounters& counters, ReferenceTile& surface) {
+  OrderedSamples samples(drawn.triangles, rules, shader, drawn.tile, surface);
+  for (const std::uint32_t index : drawn.list) samples.draw(index);
   charge_reference(samples.covered, samples.nearer, counters);
 }
 

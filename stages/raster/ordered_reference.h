@@ -13,8 +13,7 @@
 
 namespace beampipe {
 
-void ordered_reference(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                       const RopRules& rules, const TileShader& shader, StageCounters& counters,
-                       ReferenceTile& surface);
+void ordered_reference(const ListedTriangles& drawn, const RopRules& rules, const TileShader& shader,
+                       StageCounters& counters, ReferenceTile& surface);
 
 }  // namespace beampipe

@@ -70,14 +70,15 @@ ReferenceTile::ReferenceTile(const Tile& tile, const ReferencePattern& of)
   owner.assign(samples, kNoOwner);
 }
 
-void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                      StageCounters& counters, ReferenceTile& surface, const TileShader* shader) {
-  const SpanPlaces places(tile, surface.pattern);
+void reference_raster(const ListedTriangles& drawn, StageCounters& counters, ReferenceTile& surface,
+                      const TileShader* shader) {
+  const SetupTriangles& triangles = drawn.triangles;
+  const SpanPlaces places(drawn.tile, surface.pattern);
   std::optional<CutoutCells> cells;
   std::uint64_t covered = 0, nearer = 0;  // samples
-  for (const std::uint32_t index : list) {
+  for (const std::uint32_t index : drawn.list) {
     if (shader && shader->is_cutout(index)) {
-      if (!cells) cells.emplace(*shader, tile, surface.pattern.columns);
+      if (!cells) cells.emplace(*shader, drawn.tile, surface.pattern.columns);
       cells->start(index);
     }
     places.for_each_run(triangles.triangles[index], [&](const SampleRun& run, const DepthSpan& depths) {

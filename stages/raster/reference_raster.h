@@ -67,10 +67,17 @@ struct ReferenceTile {
   explicit ReferenceTile(const Tile& tile, const ReferencePattern& pattern = {});
 };
 
+// What is drawn into a tile, in this order.
+struct ListedTriangles {
+  const SetupTriangles& triangles;
+  const TriangleList& list;
+  const Tile& tile;
+};
+
 // Counts as items out the samples at which a triangle is nearer than all earlier ones.
 // Alpha is tested at every sample. `shader` may be null if all triangles are opaque.
-void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                      StageCounters& counters, ReferenceTile& surface, const TileShader* shader = nullptr);
+void reference_raster(const ListedTriangles& drawn, StageCounters& counters, ReferenceTile& surface,
+                      const TileShader* shader = nullptr);
 
 // For each pixel of the tile, the layers that lie in front of the owners of their samples: sorted by sample, and from
 // near to far. Layers of equal depth stay in primitive order.

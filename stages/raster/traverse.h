@@ -62,14 +62,14 @@ struct Traversal {
   TraversalCounts counts = {};
 };
 
-// Edge k over the cells from the one whose upper left corner is (x, y) on, in 1/256 px. The numbers are integers that
-// doubles hold.
-inline EdgeOverCells edge_over_cells(const SetupTriangle& triangle, const Edge& edge, std::size_t k, std::int32_t x,
-                                     std::int32_t y, const CellGrid& grid, FullMeans meaning) {
+// Edge k over the cells from the one with this upper left corner on, in 1/256 px. The numbers are integers that doubles
+// hold.
+inline EdgeOverCells edge_over_cells(const SetupTriangle& triangle, const Edge& edge, std::size_t k,
+                                     const glm::ivec2& corner, const CellGrid& grid, FullMeans meaning) {
   const double a = edge.a, b = edge.b;
   const double right = a * grid.cell_width(), down = b * grid.cell_height();
   const double not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
-  return {.start = a * (x - triangle.x[k]) + b * (y - triangle.y[k]),
+  return {.start = a * (corner.x - triangle.x[k]) + b * (corner.y - triangle.y[k]),
           .step = right,
           .down = down,
           .deepest = std::max(right, 0.0) + std::max(down, 0.0),
@@ -98,8 +98,8 @@ void traverse_quads(const SetupTriangle& triangle, const EdgeSet& set, Traversal
     for (std::int32_t left = x0; left < range.x1; left += kCells) {
       EdgeOverCells edges[3];
       for (std::size_t k = 0; k < 3; ++k)
-        edges[k] = edge_over_cells(triangle, set.edges[k], k, left * grid.cell_width(), top * grid.cell_height(), grid,
-                                   traversal.meaning);
+        edges[k] = edge_over_cells(triangle, set.edges[k], k, {left * grid.cell_width(), top * grid.cell_height()},
+                                   grid, traversal.meaning);
       const std::int32_t quads = std::min((range.x1 - left + 1) / 2, kQuadsPerRow);
       const std::int32_t count = std::min((range.y1 - top + 1) / 2, at_once);
       quad_rows(edges, static_cast<std::size_t>(quads), static_cast<std::size_t>(count), rows);

@@ -19,9 +19,9 @@ class AlphaTester {
   void judge(SampleFragment& fragment, std::size_t i) const {
     const CellGrid& grid = test_.sampling.grid;
     const std::int32_t x = grid.pixel_x(fragment.x), y = grid.pixel_y(fragment.y);
-    const FragmentVerdict verdict =
-        shader_.verdict(fragment.triangle, static_cast<std::uint32_t>(test_.tile.index(x, y)), test_.places[i].x,
-                        test_.places[i].y, grid.shading_width(), false, texels_);
+    const ShadingPlace place =
+        shader_.place(static_cast<std::uint32_t>(test_.tile.index(x, y)), test_.places[i].x, test_.places[i].y);
+    const FragmentVerdict verdict = shader_.verdict({fragment.triangle, place, grid.shading_width()}, false, texels_);
     const TakenPositions taken(verdict, x, y, static_cast<std::uint32_t>(samples_ * grid.cells_per_pixel()));
     const std::int32_t first = samples_ * grid.in_pixel(fragment.x, fragment.y);
     for (std::int32_t s = 0; s < samples_; ++s)

@@ -27,12 +27,6 @@ constexpr std::size_t kLaneGroup = 16;
 // spent, and the block that it wants.
 constexpr std::uint32_t kAsideRow = 0, kTakesRow = 1, kSpentRow = 2, kWantedRow = 3, kOwnRows = 4;
 
-struct LaneState {
-  LaneRow* rows;
-  std::size_t lanes;  // a multiple of kLaneGroup
-  const LaneProgram* program;
-  const ShaderResources* resources;
-};
 using LaneKernel = void (*)(const LaneOp&, const LaneState&);
 
 template <class Value>

@@ -29,16 +29,15 @@ constexpr std::uint32_t kNoBlock = ~0u;
 // One run of a program.
 class ProgramRun {
  public:
-  ProgramRun(const LaneProgram& program, const ShaderResources& resources, LaneRow* rows, std::size_t lanes,
-             std::uint32_t most_steps)
-      : program_(program),
+  ProgramRun(const LaneState& state, std::uint32_t most_steps)
+      : program_(*state.program),
         most_steps_(most_steps),
-        state_{rows, lanes, &program, &resources},
-        active_(rows[kActiveRow]),
-        aside_(rows[program.rows + kAsideRow]),
-        takes_(rows[program.rows + kTakesRow]),
-        spent_(rows[program.rows + kSpentRow]),
-        wanted_(rows[program.rows + kWantedRow]) {
+        state_(state),
+        active_(state.rows[kActiveRow]),
+        aside_(state.rows[program_.rows + kAsideRow]),
+        takes_(state.rows[program_.rows + kTakesRow]),
+        spent_(state.rows[program_.rows + kSpentRow]),
+        wanted_(state.rows[program_.rows + kWantedRow]) {
     spent_.bits.fill(0);
   }
 
@@ -151,9 +150,10 @@ class ProgramRun {
   std::uint32_t stopped_ = 0;
 };
 
-void run_program_kernel(const LaneProgram& program, const ShaderResources& resources, LaneRow* rows, std::size_t lanes,
-                        const std::uint32_t* instructions, std::uint32_t most_steps, ShaderCounts& counts) {
-  ProgramRun(program, resources, rows, lanes, most_steps).run(instructions, counts);
+// `instructions`: of each block.
+void run_program_kernel(const LaneState& state, const std::uint32_t* instructions, std::uint32_t most_steps,
+                        ShaderCounts& counts) {
+  ProgramRun(state, most_steps).run(instructions, counts);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -190,7 +190,7 @@ void ShaderExecutor::run(const ShaderResources& resources, std::size_t count, st
   }
   for (std::uint32_t i = 0; i < program_.memory_rows; ++i) rows_[program_.first_memory + i].bits.fill(0);
   HWY_DYNAMIC_DISPATCH(run_program_kernel)
-  (program_, resources, rows_.data(), lanes, instructions_.data(), most_steps, counts);
+  ({rows_.data(), lanes, &program_, &resources}, instructions_.data(), most_steps, counts);
 }
 
 std::uint64_t ShaderExecutor::kept() const {

@@ -26,6 +26,14 @@ struct ShaderResources {
   ImageReader* images = nullptr;  // may be null if the shader has none
 };
 
+// What lane operations work on.
+struct LaneState {
+  LaneRow* rows;
+  std::size_t lanes;  // a multiple of 16
+  const LaneProgram* program;
+  const ShaderResources* resources;
+};
+
 // Sums over invocations: each counts what it executes.
 struct ShaderCounts {
   std::uint64_t invocations = 0;

@@ -242,8 +242,7 @@ std::vector<ProgramShader::Group> ProgramShader::grouped(const LaneProgram& prog
 }
 
 void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
-                        glm::vec4* colors, TexelRequests* texels, FragmentVerdict* verdicts,
-                        ShaderCounts& counts) const {
+                        const Answers& answers, ShaderCounts& counts) const {
   const bool has_helpers = draw.program->takes_differences;
   programs_->with_executor(draw.number, [&](ShaderExecutor& executor) {
     std::uint64_t active = 0, helpers = 0;
@@ -284,7 +283,7 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
       }
       set_inputs(draw, *last, std::span(lanes).first(count), helpers, executor);
     }
-    ProgramImages images(*draw.program, draw.images, active & ~helpers, texels);
+    ProgramImages images(*draw.program, draw.images, active & ~helpers, answers.texels);
     ShaderResources resources = draw.resources;
     resources.images = &images;
     executor.run(resources, groups.size() * kGroup, active, helpers, counts, draw.most_steps);
@@ -299,9 +298,10 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
       };
       const bool is_there = kept >> lane & 1;
       const float alpha = draw.has_alpha ? std::max(channel(3, 1.0f), 0.0f) : 1.0f;
-      colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f), is_there ? alpha : kDiscarded};
-      if (!verdicts) continue;
-      FragmentVerdict& verdict = verdicts[place_of[lane]];
+      answers.colors[place_of[lane]] = {channel(0, 0.0f), channel(1, 0.0f), channel(2, 0.0f),
+                                        is_there ? alpha : kDiscarded};
+      if (!answers.verdicts) continue;
+      FragmentVerdict& verdict = answers.verdicts[place_of[lane]];
       if (draw.depth_output != kNoRow) verdict.depth = limited(executor.row(draw.depth_output).number(lane)) - 1;
       if (draw.samples_output != kNoRow)
         verdict.samples = FragmentVerdict::repeated(executor.row(draw.samples_output).bits[lane], target_samples_);
@@ -309,14 +309,13 @@ void ProgramShader::run(const BoundDraw& draw, std::span<const ProgramPlace> pla
   });
 }
 
-void ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors,
-                              TexelRequests* texels, FragmentVerdict* verdicts) const {
+void ProgramShader::shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places,
+                              const Answers& answers) const {
   const std::vector<Group> groups = grouped(*draw.program, places);
   constexpr std::size_t kMost = kShaderLanes / kGroup;
   ShaderCounts counts;  // what is charged comes from measure()
   for (std::size_t first = 0; first < groups.size(); first += kMost)
-    run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), colors, texels,
-        verdicts, counts);
+    run(draw, places, std::span(groups).subspan(first, std::min(kMost, groups.size() - first)), answers, counts);
   if (counts.stopped > 0) *draw.stopped += counts.stopped;
 }
 
@@ -324,7 +323,7 @@ void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* color
                           FragmentVerdict* verdicts) const {
   if (places.empty()) return;
   const BoundDraw& draw = draws_[triangles_.draws[places[0].triangle]];
-  shade_all(draw, places, colors, texels, verdicts);
+  shade_all(draw, places, {colors, texels, verdicts});
   if (draw.mode != AlphaMode::mask) return;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].is_there || colors[i].a != kDiscarded) continue;
@@ -336,7 +335,7 @@ void ProgramShader::shade(std::span<const ProgramPlace> places, glm::vec4* color
       around[k].u = std::clamp(places[i].u + (k % 2 == 0 ? -0.25f : 0.25f), 0.0f, 1.0f);
       around[k].v = std::clamp(places[i].v + (k < 2 ? -0.25f : 0.25f), 0.0f, 1.0f);
     }
-    shade_all(draw, around, found.data(), nullptr, found_verdicts.data());
+    shade_all(draw, around, {found.data(), nullptr, found_verdicts.data()});
     const auto kept = std::ranges::find_if(found, [](const glm::vec4& color) { return color.a != kDiscarded; });
     if (kept == found.end()) continue;
     colors[i] = *kept;
@@ -365,7 +364,7 @@ void ProgramShader::measure(std::uint32_t draw, std::span<const std::uint32_t> t
   BoundDraw& bound = draws_[draw];
   std::array<glm::vec4, kMost> colors;
   ShaderCounts counts;
-  run(bound, places, grouped(*bound.program, places), colors.data(), nullptr, nullptr, counts);
+  run(bound, places, grouped(*bound.program, places), {colors.data()}, counts);
   const auto mean = [&](std::uint64_t sum) { return (sum + counts.invocations / 2) / counts.invocations; };
   if (counts.stopped > 0) bound.most_steps = kStepsOfEndless;
   Cost& cost = bound.cost;

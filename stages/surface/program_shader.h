@@ -117,14 +117,20 @@ class ProgramShader {
     std::array<std::uint32_t, 4> places{kNone, kNone, kNone, kNone};
   };
 
+  // As of shade().
+  struct Answers {
+    glm::vec4* colors;
+    TexelRequests* texels = nullptr;
+    FragmentVerdict* verdicts = nullptr;
+  };
+
   BoundDraw bind(const Draw& draw) const;
   static std::vector<Group> grouped(const LaneProgram& program, std::span<const ProgramPlace> places);
   void set_inputs(const BoundDraw& draw, const ProgramPlace& place, std::span<const Lane> lanes, std::uint64_t helpers,
                   ShaderExecutor& executor) const;
-  void shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, glm::vec4* colors, TexelRequests* texels,
-                 FragmentVerdict* verdicts) const;
+  void shade_all(const BoundDraw& draw, std::span<const ProgramPlace> places, const Answers& answers) const;
   void run(const BoundDraw& draw, std::span<const ProgramPlace> places, std::span<const Group> groups,
-           glm::vec4* colors, TexelRequests* texels, FragmentVerdict* verdicts, ShaderCounts& counts) const;
+           const Answers& answers, ShaderCounts& counts) const;
   void measure(std::uint32_t draw, std::span<const std::uint32_t> triangles);
 
   const SetupTriangles& triangles_;

@@ -397,9 +397,8 @@ class TileShader {
   }
   bool has_verdict(std::uint32_t triangle) const { return shader_ && shader_->has_verdict(triangle); }
   bool tests_early(std::uint32_t triangle) const { return shader_ && shader_->tests_early(triangle); }
-  FragmentVerdict verdict(std::uint32_t triangle, std::uint32_t pixel, float u, float v, const Footprint& footprint,
-                          bool place_is_there, TexelRequests* texels) const {
-    return shader_->verdicts(triangle, {{triangle, place(pixel, u, v), footprint}}, place_is_there, texels)[0];
+  FragmentVerdict verdict(const Invocation& invocation, bool place_is_there, TexelRequests* texels) const {
+    return shader_->verdicts(invocation.triangle, {invocation}, place_is_there, texels)[0];
   }
   std::vector<FragmentVerdict> verdicts(std::uint32_t triangle, const std::vector<Invocation>& invocations) const {
     return shader_->verdicts(triangle, invocations, false);

@@ -39,6 +39,9 @@ void finish_report(OutputFolder& output, const Trace& trace, Report report) {
   std::cout << table_text(report, output.path().string()) << measures_text(report) << causes_text(report)
             << orders_text(report) << (report.memory.modelled ? times_text(report) : "")
             << "report: " << (output.path() / "report.json").string() << "\n";
+  const std::filesystem::path page = output.path() / "report.html";
+  if (std::error_code ignored; std::filesystem::exists(page, ignored))
+    std::cerr << "beampipe: note: " << page.string() << " is of earlier results; `beampipe report` makes it again\n";
 }
 
 }  // namespace beampipe

@@ -19,8 +19,8 @@ std::array<std::size_t, 2> test_every_sample(const ShadedScene& scene, const Til
   for (SetupSurface& surface : opaque.surfaces) surface.is_opaque = true;
   ReferenceTile covered(tile, pattern), taken(tile, pattern);
   StageCounters counters;
-  reference_raster(opaque, {triangle}, tile, counters, covered);
-  reference_raster(scene.triangles, {triangle}, tile, counters, taken, &shader);
+  reference_raster({opaque, {triangle}, tile}, counters, covered);
+  reference_raster({scene.triangles, {triangle}, tile}, counters, taken, &shader);
   std::array<std::size_t, 2> found{};
   std::size_t wrong = 0;
   const auto columns = static_cast<std::size_t>(pattern.columns), rows = static_cast<std::size_t>(pattern.rows());

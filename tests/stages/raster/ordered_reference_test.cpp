@@ -29,7 +29,7 @@ struct Stream {
     const RopRules rules(trace, frame, clear);
     ReferenceTile samples(kPixel);
     StageCounters counters;
-    ordered_reference(triangles, all_of(triangles), kPixel, rules, shader, counters, samples);
+    ordered_reference({triangles, all_of(triangles), kPixel}, rules, shader, counters, samples);
     return resolve(samples, kPixel, shader, clear, counters).at(0);
   }
 };
@@ -83,7 +83,7 @@ TEST(OrderedReference, BlendedSurfacesAreShadedInEachCell) {
   const RopRules rules(scene.trace, scene.frame(), glm::vec3(0.0f));
   ReferenceTile samples(tile);
   StageCounters counters;
-  ordered_reference(shaded.triangles, all_of(shaded.triangles), tile, rules, shader, counters, samples);
+  ordered_reference({shaded.triangles, all_of(shaded.triangles), tile}, rules, shader, counters, samples);
   const std::vector<glm::vec4> found = resolve(samples, tile, shader, glm::vec3(0.0f), counters);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(found[i].r, i < 2 ? 0.25 : 0.75, 1e-6) << i;

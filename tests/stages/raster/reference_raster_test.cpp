@@ -53,7 +53,7 @@ TEST(ReferenceRaster, EqualsATestOfEverySample) {
     const Tile tile = round % 2 == 0 ? Tile{0, 0, 4, 4} : Tile{6, 2, 9, 5};
     ReferenceTile surface(tile);
     StageCounters counters;
-    reference_raster(triangles, all_of(triangles), tile, counters, surface);
+    reference_raster({triangles, all_of(triangles), tile}, counters, surface);
     EXPECT_TRUE(surface.owner == brute_force(triangles, tile)) << "round " << round;
   }
 }
@@ -63,7 +63,7 @@ TEST(ReferenceRaster, FansCoverEverySample) {
   const SetupTriangles fan = fan_around({514, 514}, 4'096, 400);  // some of its edges have slope 16 and the like
   ReferenceTile surface(tile);
   StageCounters counters;
-  reference_raster(fan, all_of(fan), tile, counters, surface);
+  reference_raster({fan, all_of(fan), tile}, counters, surface);
   EXPECT_EQ(std::count(surface.owner.begin(), surface.owner.end(), kNoOwner), 0);
   EXPECT_EQ(counters.lanes_used, tile.pixels() * 4096);  // each sample is in one span
   EXPECT_EQ(counters.lanes_issued, counters.lanes_used);
@@ -103,7 +103,7 @@ std::vector<double> errors_of_areas(const ReferencePattern& pattern) {
     add_triangle(triangles, {-1000, 0, -0.5f}, {bottom, 256, -0.5f}, {-1000, 256, -0.5f});
     ReferenceTile surface(tile, pattern);
     StageCounters counters;
-    reference_raster(triangles, all_of(triangles), tile, counters, surface);
+    reference_raster({triangles, all_of(triangles), tile}, counters, surface);
     const auto outside = std::count(surface.owner.begin(), surface.owner.end(), kNoOwner);
     errors.push_back(1 - static_cast<double>(outside) / pattern.samples() - (top + bottom) / 512.0);
   }

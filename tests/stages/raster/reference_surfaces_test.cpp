@@ -14,7 +14,7 @@ std::vector<glm::vec4> picture(const Trace& trace) {
   const TileShader shader(scene.shader, tile);
   ReferenceTile samples(tile);
   StageCounters counters;
-  reference_raster(scene.triangles, all_of(scene.triangles), tile, counters, samples, &shader);
+  reference_raster({scene.triangles, all_of(scene.triangles), tile}, counters, samples, &shader);
   return resolve(samples, tile, shader, trace.frames[0].background, counters);
 }
 

@@ -387,6 +387,13 @@ TEST_F(ProgramTest, ReportsSayWhichCommandMadeThem) {
             "beampipe run " + path("trace.json") + " -t msaa:1 --no-memory-model -o '" + path("out of it") + "'");
 }
 
+TEST_F(ProgramTest, APageOfEarlierResultsIsNoted) {
+  const Names command = {"run", path("trace.json"), "-t", "msaa:1", "--no-memory-model", "--force", "-o", path("out")};
+  EXPECT_EQ(run_program(command).err.find("earlier results"), std::string::npos);
+  write_text(folder_ / "out/report.html", "");
+  EXPECT_NE(run_program(command).err.find("out/report.html is of earlier results"), std::string::npos);
+}
+
 TEST_F(ProgramTest, DescriptionsOfHardwareStartFromOneThatIsBuiltIn) {
   write_text(folder_ / "mine.json", succeed({"schema", "hardware", "--built-in", "mali_g710"}));
   succeed({"run", path("trace.json"), "-t", "msaa:1", "--hardware", path("mine.json"), "-o", path("out")});
