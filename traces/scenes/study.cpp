@@ -16,10 +16,16 @@ struct StudyLook {
   Finish wallpaper, boards, carpet, spine, page, paint;
 };
 
-// Books with their backs to the room. Spines are textures of their own.
-void add_spines(MeshBuilder& books, double from, double to, double bottom, double space, double width, Random& random) {
-  for (double z = from; z + 1.6 * width < to;) {
-    const double thick = width * random.uniform(0.5, 1.5), high = space * random.uniform(0.6, 0.93);
+// Along z, and what is above the board.
+struct Shelf {
+  double from, to, bottom, space;
+};
+
+// Books with their backs to the room. Spines are textures of their own. `width`: of a book, in the mean.
+void add_spines(MeshBuilder& books, const Shelf& shelf, double width, Random& random) {
+  const double bottom = shelf.bottom;
+  for (double z = shelf.from; z + 1.6 * width < shelf.to;) {
+    const double thick = width * random.uniform(0.5, 1.5), high = shelf.space * random.uniform(0.6, 0.93);
     if (random.uniform() < 0.05) z += 2 * thick;
     books.color = random.uniform({0.35, 0.25, 0.2}, {1.0, 0.9, 0.8});
     books.box({kBooksAt + 0.02, bottom, z},
@@ -37,7 +43,7 @@ void add_bookcase(MeshBuilder& wood, MeshBuilder& books, double width, bool is_s
     for (int i = 0; i < fields; ++i) {
       const double from = i * field + 0.02, to = (i + 1) * field - 0.02;
       wood.box({kBooksAt, k * pitch, from}, {kBooksAt + kBoardDepth, k * pitch + 0.03, to});
-      add_spines(books, from, to, k * pitch + 0.03, pitch - 0.03, width, random);
+      add_spines(books, {from, to, k * pitch + 0.03, pitch - 0.03}, width, random);
     }
 }
 
