@@ -27,8 +27,10 @@ constexpr double kPointRadius = 5;                                             /
 constexpr int kPngScale = 2;                                                   // PNG pixels per px
 constexpr int kNoProgram = 127;  // exit code if there is no such program, as in a shell
 
-// A string in single quotes, in which gnuplot interprets nothing.
-std::string quoted(const std::string& text) {
+// In single quotes gnuplot interprets nothing; in double quotes it would run what stands between backquotes. (The name
+// is none of the standard library's: std::quoted, which writes double quotes, would be the better match for a string
+// that is not const.)
+std::string in_single_quotes(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "''" : static_cast<unsigned char>(c) < 0x20 ? " " : std::string(1, c);
   return out + "'";
@@ -117,31 +119,31 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
       script << "set arrow from graph " << point.x / task.width << "," << point.y / task.height << " to graph "
              << (label.x + std::copysign(std::abs(label.x - point.x) - dx, point.x - label.x)) / task.width << ","
              << (label.y + std::copysign(std::abs(label.y - point.y) - dy, point.y - label.y)) / task.height
-             << " nohead back linecolor " << quoted(colors[i]) << "\n";
+             << " nohead back linecolor " << in_single_quotes(colors[i]) << "\n";
     }
     // A label to the right (left) of its point starts (ends) there, however wide the font makes it.
     const int side = label.x > point.x + 1 ? 1 : label.x < point.x - 1 ? -1 : 0;
-    script << "set label " << quoted(labels[i]) << " at graph "
+    script << "set label " << in_single_quotes(labels[i]) << " at graph "
            << (label.x - side * task.label_widths[i] / 2) / task.width << "," << label.y / task.height << " "
            << (side > 0   ? "left"
                : side < 0 ? "right"
                           : "center")
-           << " textcolor rgb " << quoted(colors[i]) << "\n";
+           << " textcolor rgb " << in_single_quotes(colors[i]) << "\n";
   }
 }
 
 // The axes and everything around them. `right` is where the axes end, as a part of the picture's width.
 void write_frame(std::ostream& script, const std::string& title, const std::string& y_label, double right) {
   script << "set lmargin at screen " << kLeft << "\nset rmargin at screen " << right << "\nset bmargin at screen "
-         << kBottom << "\nset tmargin at screen " << kTop << "\nset title " << quoted(title) << "\nset ylabel "
-         << quoted(y_label) << " offset 1,0\nset border 3 linecolor '#404040'\n"
+         << kBottom << "\nset tmargin at screen " << kTop << "\nset title " << in_single_quotes(title)
+         << "\nset ylabel " << in_single_quotes(y_label) << " offset 1,0\nset border 3 linecolor '#404040'\n"
          << "set grid linetype 1 linecolor '#e4e4e4'\n";
 }
 
 void write_axes(std::ostream& script, const ScatterPlot& plot, const LogRange& x, const LogRange& y) {
   write_frame(script, plot.title, plot.y_label, kRight);
-  script << "set xlabel " << quoted(plot.x_label) << "\nset logscale xy\nset xrange [" << x.low << ":" << x.high
-         << "]\nset yrange [" << y.low << ":" << y.high << "]\nset xtics nomirror ("
+  script << "set xlabel " << in_single_quotes(plot.x_label) << "\nset logscale xy\nset xrange [" << x.low << ":"
+         << x.high << "]\nset yrange [" << y.low << ":" << y.high << "]\nset xtics nomirror ("
          << (plot.x_ticks.empty() ? tics(x) : tics(plot.x_ticks)) << ")\nset ytics nomirror (" << tics(y)
          << ")\nset key off\n";
 }
@@ -160,7 +162,7 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
     ++block;
   };
   for (const PlotSeries& series : plot.series) {
-    const std::string color = " linecolor " + quoted(series.color);
+    const std::string color = " linecolor " + in_single_quotes(series.color);
     if (series.line) add(series.points, "lines linewidth 2" + color);
     if (!series.marks) continue;
     for (const auto bound :
@@ -272,12 +274,12 @@ std::string gnuplot_script(const BarPlot& plot, PlotFormat format) {
   }
   script << "END\n";
   for (std::size_t i = 0; i < plot.parts.size(); ++i) {
-    script << (i > 0 ? ", " : "plot ") << "$bars using " << i + 2 << ":xtic(1) title " << quoted(plot.parts[i].name)
-           << " linecolor " << quoted(plot.parts[i].color);
+    script << (i > 0 ? ", " : "plot ") << "$bars using " << i + 2 << ":xtic(1) title "
+           << in_single_quotes(plot.parts[i].name) << " linecolor " << in_single_quotes(plot.parts[i].color);
   }
   if (!plot.marks.empty())
     script << ", $bars using 0:" << plot.parts.size() + 2 << " with points pointtype 2 linecolor '#000000' title "
-           << quoted(plot.mark_name);
+           << in_single_quotes(plot.mark_name);
   script << "\n";
   return script.str();
 }

@@ -50,6 +50,8 @@ TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReferen
   EXPECT_EQ(plot.series[1].points[0].y, 100);
   EXPECT_EQ(plot.series[1].points[0].label, "beam");
   EXPECT_EQ(plot.series[1].points[0].bound, PlotPoint::Bound::none);
+  const std::string script = gnuplot_script(plot, PlotFormat::svg);
+  EXPECT_NE(script.find("textcolor rgb '" + plot.series[0].color), script.npos) << "labels of a line have its colour";
 }
 
 TEST_F(PlotTest, SamplesOnChipTakeNoMemoryOnTheFrontier) {
@@ -83,6 +85,13 @@ TEST_F(PlotTest, RatesByDifferentMetricsHaveNoMean) {
                                              (folder_ / "rmse").string() + ", found rates by psnr");
   }
   EXPECT_FALSE(speed_plot(reports).series.empty()) << "which has no rates";
+}
+
+TEST_F(PlotTest, GnuplotRunsNothingThatALabelSays) {
+  const std::string spec = "beam`touch ran`";
+  const std::string script = gnuplot_script(
+      frontier_plot({read_report(make_report("a", report_text(spec, 42, 100, 0.01, 50)))}), PlotFormat::svg);
+  EXPECT_NE(script.find("set label '" + spec + "' at"), script.npos) << script;
 }
 
 TEST_F(PlotTest, StorageIsAllMemoryOnChipAndOffChip) {
