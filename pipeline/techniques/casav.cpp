@@ -1,8 +1,7 @@
-// CASAV, correlation-aware semi-analytic visibility: the pipeline of Crassin et al. 2018. Conservative
-// raster makes pairs; they become fragments with analytic coverage and a localization mask, are shaded, sorted in an
-// A-buffer, and merged near to far into one aggregate per pixel. Without the A-buffer, each pixel keeps a few
-// aggregates, into which fragments are merged as they come: near to far, roughly, in sorted bins, or in primitive
-// order.
+// CASAV, correlation-aware semi-analytic visibility: the pipeline of Crassin et al. 2018. Conservative raster makes
+// pairs; they become fragments with analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and
+// merged near to far into one aggregate per pixel. Without the A-buffer, each pixel keeps a few aggregates, into which
+// fragments are merged as they come: near to far, roughly, in sorted bins, or in primitive order.
 #include <algorithm>
 #include <string>
 

@@ -6,8 +6,8 @@ import math
 import struct
 import sys
 
-from own_program import (GL_ARRAY_BUFFER, GL_COLOR_BUFFER_BIT, GL_DEPTH_BUFFER_BIT, GL_DEPTH_TEST, GL_FLOAT,
-                         GL_STATIC_DRAW, HEIGHT, WIDTH, library, make_program, open_window, start_egl)
+from own_program import (GL_COLOR_BUFFER_BIT, GL_DEPTH_BUFFER_BIT, GL_DEPTH_TEST, HEIGHT, WIDTH, library, make_program,
+                         open_window, start_egl, take_vertices)
 
 VERTEX_SHADER = b"""#version 300 es
 layout(location = 0) in vec3 position;
@@ -65,13 +65,7 @@ def main(samples):
         first[name], count[name] = at, len(vertices) // 28
         at += count[name]
     elements = struct.pack(f"<{len(ELEMENTS)}H", *(e if e == 0xFFFF else e + first["strip"] for e in ELEMENTS))
-    buffer = ctypes.c_uint()
-    gl.glGenBuffers(1, ctypes.byref(buffer))
-    gl.glBindBuffer(GL_ARRAY_BUFFER, buffer)
-    gl.glBufferData(GL_ARRAY_BUFFER, ctypes.c_ssize_t(len(data)), data, GL_STATIC_DRAW)
-    for location, size, offset in ((0, 3, 0), (1, 4, 12)):
-        gl.glEnableVertexAttribArray(location)
-        gl.glVertexAttribPointer(location, size, GL_FLOAT, 0, 28, ctypes.c_void_p(offset))
+    take_vertices(gl, data)
     draw = lambda kind, name: gl.glDrawArrays(kind, first[name], count[name])
     gl.glViewport(0, 0, WIDTH, HEIGHT)
     gl.glEnable(GL_PRIMITIVE_RESTART)

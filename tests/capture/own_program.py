@@ -119,19 +119,24 @@ QUADS = [
 ]
 
 
-def main():
-    show = start_egl(*open_window())
-    gl = library("GLESv2")
-    f = ctypes.c_float
-    program = make_program(gl)
-    step, is_flat = (gl.glGetUniformLocation(program, name) for name in (b"step", b"flat_"))
-    buffer, data = ctypes.c_uint(), b"".join(QUADS)
+def take_vertices(gl, data):
+    """Draws take these vertices of quad() from now on."""
+    buffer = ctypes.c_uint()
     gl.glGenBuffers(1, ctypes.byref(buffer))
     gl.glBindBuffer(GL_ARRAY_BUFFER, buffer)
     gl.glBufferData(GL_ARRAY_BUFFER, ctypes.c_ssize_t(len(data)), data, GL_STATIC_DRAW)
     for location, size, offset in ((0, 3, 0), (1, 4, 12)):
         gl.glEnableVertexAttribArray(location)
         gl.glVertexAttribPointer(location, size, GL_FLOAT, 0, 28, ctypes.c_void_p(offset))
+
+
+def main():
+    show = start_egl(*open_window())
+    gl = library("GLESv2")
+    f = ctypes.c_float
+    program = make_program(gl)
+    step, is_flat = (gl.glGetUniformLocation(program, name) for name in (b"step", b"flat_"))
+    take_vertices(gl, b"".join(QUADS))
 
     def draw(number, instances=1):
         gl.glDrawArraysInstanced(GL_TRIANGLE_STRIP, 4 * number, 4, instances)

@@ -5,10 +5,9 @@ object of a format of sRGB), object_codes (the same without encoding), mixed_srg
 import ctypes
 import sys
 
-from own_program import (FLOOR, GL_ARRAY_BUFFER, GL_BLEND, GL_COLOR_BUFFER_BIT, GL_DEPTH_BUFFER_BIT, GL_DEPTH_TEST,
-                         GL_FLOAT, GL_LEQUAL, GL_ONE_MINUS_SRC_ALPHA, GL_SCISSOR_TEST, GL_SRC_ALPHA, GL_STATIC_DRAW,
-                         GL_TRIANGLE_STRIP, HEIGHT, INSTANCES, PANEL, QUADS, WIDTH, library, make_program, open_window,
-                         start_egl)
+from own_program import (FLOOR, GL_BLEND, GL_COLOR_BUFFER_BIT, GL_DEPTH_BUFFER_BIT, GL_DEPTH_TEST, GL_LEQUAL,
+                         GL_ONE_MINUS_SRC_ALPHA, GL_SCISSOR_TEST, GL_SRC_ALPHA, GL_TRIANGLE_STRIP, HEIGHT, INSTANCES,
+                         PANEL, QUADS, WIDTH, library, make_program, open_window, start_egl, take_vertices)
 
 EGL_GL_COLORSPACE, EGL_GL_COLORSPACE_SRGB = 0x309D, 0x3089
 GL_FRAMEBUFFER_SRGB, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT24 = 0x8DB9, 0x8C43, 0x81A6
@@ -37,13 +36,7 @@ def main(what):
     f = ctypes.c_float
     program = make_program(gl)
     step, is_flat = (gl.glGetUniformLocation(program, name) for name in (b"step", b"flat_"))
-    buffer, data = ctypes.c_uint(), b"".join(QUADS)
-    gl.glGenBuffers(1, ctypes.byref(buffer))
-    gl.glBindBuffer(GL_ARRAY_BUFFER, buffer)
-    gl.glBufferData(GL_ARRAY_BUFFER, ctypes.c_ssize_t(len(data)), data, GL_STATIC_DRAW)
-    for location, size, offset in ((0, 3, 0), (1, 4, 12)):
-        gl.glEnableVertexAttribArray(location)
-        gl.glVertexAttribPointer(location, size, GL_FLOAT, 0, 28, ctypes.c_void_p(offset))
+    take_vertices(gl, b"".join(QUADS))
     has_object = what in ("object_srgb", "object_codes", "mixed_srgb")
     target = make_object(gl) if has_object else 0
     gl.glDepthFunc(GL_LEQUAL)

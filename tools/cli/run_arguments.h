@@ -15,7 +15,7 @@ namespace beampipe {
 
 // The arguments as the user wrote them.
 struct RunArguments {
-  std::string command_line;  // all of it
+  std::string command_line;  // all words, as one text
   std::string trace, output, frames, trace_events, tev;
   HardwareOptions hardware;
   TraceView view;

@@ -97,7 +97,7 @@ SampledDepths sampled_depths(const Trace& trace, const Frame& frame, const Textu
     if (surface.depth[pixel] == rules.clear_depth) continue;
     found.draw[pixel] = triangles.draws[owner[pixel]];
     const double x = static_cast<double>(pixel % frame.width), y = static_cast<double>(pixel / frame.width);
-    const double depth = shader.has_verdict(owner[pixel])  // which may be another depth
+    const double depth = shader.has_verdict(owner[pixel])  // its shader may write another depth
                              ? surface.depth[pixel]
                              : triangles.triangles[owner[pixel]].depth.at(x + at.x, y + at.y);
     found.depth[pixel] = std::clamp(depth + 1, 0.0, 1.0);

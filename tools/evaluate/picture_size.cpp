@@ -32,8 +32,8 @@ void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureS
     if (size == PictureSize{frame.width, frame.height}) continue;
     const bool same_ratio = std::uint64_t{frame.width} * size.height == std::uint64_t{frame.height} * size.width;
     if (trace.source)
-      throw std::runtime_error(name + ": a captured frame stays " + text_of({frame.width, frame.height}) +
-                               " pixels, expected no other size");
+      throw std::runtime_error(name + ": cannot be " + text_of(size) + " pixels: expected " +
+                               text_of({frame.width, frame.height}) + ", because the frame was captured so");
     if (has_viewport(frame) || (!frame.camera && !same_ratio))
       throw std::runtime_error(name + ": cannot be " + text_of(size) +
                                " pixels: expected frames that name a camera, or have this ratio of width to height, "

@@ -58,7 +58,7 @@ struct FrameContent {
 
 struct Report {
   std::string trace, version, simd;
-  std::string command_line = {};  // that asked for it; empty: none did
+  std::string command_line = {};  // the one that made it; empty if none did
   int threads = 0;
   MemoryParameters memory = {};
   Hardware hardware = {};  // whose times are modelled; nothing is modelled if it has no implementations

@@ -17,7 +17,7 @@ namespace beampipe {
 
 struct RunPlan {
   std::string trace_file;    // as the user named it
-  std::string command_line;  // that asks for all this; empty if none does
+  std::string command_line;  // the one that asks for it; empty if none does
   Trace trace;
   std::vector<Technique> techniques;
   std::vector<std::size_t> frames;      // indices into the trace, rising

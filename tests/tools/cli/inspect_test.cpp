@@ -124,6 +124,7 @@ TEST_F(InspectTest, InTheApisOrderWeightsAreWhatDrawsHavePutIntoThePixel) {
   const std::string text = succeed({"inspect", path("trace.json"), "--pixel", "10,7", "-t", "msaa:4"});
   EXPECT_NE(text.find("blended"), text.npos) << text;
   EXPECT_EQ(text.find("causes"), text.npos) << "they are not known\n" << text;
+  EXPECT_NE(text.find("Samples: what each fragment covers\n"), text.npos) << "nobody owns them\n" << text;
 }
 
 TEST_F(InspectTest, WeightsTimesColoursAreThePictureOfTranslucentSheets) {

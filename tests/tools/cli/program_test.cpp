@@ -405,6 +405,19 @@ TEST_F(ProgramTest, CheckCaptureNeedsACapture) {
                "trace.json: expected the captured program's depths or picture");
 }
 
+TEST_F(ProgramTest, CheckCaptureSaysWhichFramesHaveNoDepth) {
+  Parsed trace = Parsed::parse(kTrace);
+  trace["beampipe_trace"] = 2;
+  trace["frames"][0]["captured"]["depth"] = std::vector<float>(20 * 12, 1.0f);
+  write_text(folder_ / "trace.json", trace.dump());
+  const std::string text = succeed({"check-capture", path("trace.json")});
+  EXPECT_NE(text.find("\nframe 1: the trace has no captured depth\n"), text.npos) << text;
+  const Parsed json = Parsed::parse(succeed({"check-capture", path("trace.json"), "--json"}));
+  EXPECT_EQ(json["beampipe_check_capture"], 1);
+  EXPECT_GT(json["frames"][0].size(), 1u);
+  EXPECT_EQ(json["frames"][1].size(), 1u) << "its number";
+}
+
 TEST_F(ProgramTest, MakeListsAndMakesScenes) {
   EXPECT_NE(succeed({"make", "--list"}).find("fence"), std::string::npos);
   const auto make = [&](const std::string& seed, const std::string& file) {

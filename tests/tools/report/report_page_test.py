@@ -362,7 +362,7 @@ class ReportPage(PageTest):
                 for name, unit, value in [
                         ("DRAM", " MB", lambda result: mean(result, lambda frame: frame["dram_bytes"]) / 1e6),
                         ("on chip", " B/pixel", lambda result: result["on_chip_bytes_per_pixel"]),
-                        ("time at once", " ms", lambda result: mean(result, lambda frame: frame["modelled_ms"][way]["at_once"])),
+                        ("time", " ms", lambda result: mean(result, lambda frame: frame["modelled_ms"][way]["at_once"])),
                         ("RMSE", "", lambda result: result["error"]["rmse"]),
                         ("EMR", "", lambda result: result["equivalent_msaa"])]:
                     bound = "≥ " if name == "EMR" and result["equivalent_msaa_is_lower_bound"] else ""
@@ -372,11 +372,11 @@ class ReportPage(PageTest):
                         self.assertLessEqual(abs(ratio * value(self.results["msaa:8"]) / value(result) - 1), 0.06, f"{spec} {name}")
                 units = [limit(frame["modelled_ms"][way]["busiest"], frame["modelled_ms"][way]["busiest_rate"])
                          for frame in result["frames"]]
-                self.assertEqual(card["time at once"][2], "bottleneck: " + ", ".join(dict.fromkeys(units)))
+                self.assertEqual(card["time"][2], "bottleneck: " + ", ".join(dict.fromkeys(units)))
                 low, high = times[spec, way]["at_once_interval"]
-                self.assertEqual(card["time at once"][3], f"range: {self.short(low)} to {self.short(high)} ms")
+                self.assertEqual(card["time"][3], f"range: {self.short(low)} to {self.short(high)} ms")
                 low, high = times[spec, way]["in_turn_interval"]
-                self.assertIn(f"({self.short(low)} to {self.short(high)})", card["time at once"][5])
+                self.assertIn(f"({self.short(low)} to {self.short(high)})", card["time"][5])
             self.assertLessEqual({f"time_{way}", f"speed_{way}"}, set(self.plots()), "the choice holds for the plots as well")
 
     def test_conditions_tell_what_was_drawn_and_how(self):
@@ -789,7 +789,7 @@ class RunPage(PageTest):
 
     def test_has_costs_stages_pictures_and_counters(self):
         self.assertEqual(self.texts(".card h3"), ["msaa:1,prepass baseline", "msaa:8,color=rgba16f,prepass", "acaa:8"])
-        self.assertEqual(list(self.card("acaa:8")), ["DRAM", "on chip", "off chip", "time at once"])
+        self.assertEqual(list(self.card("acaa:8")), ["DRAM", "on chip", "off chip", "time"])
         self.assertEqual(self.plots(), ["time_shaders", "dram_bytes", "roofline_msaa_1_prepass"])
         self.assertEqual(self.value_of("right-technique"), "msaa:8,color=rgba16f,prepass")
         self.assertEqual(self.texts("#maps h2"), ["What happens in each pixel?"])

@@ -268,8 +268,12 @@ TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
              R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "frames": [2]})");
   write_text(folder_ / "bins.json", R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam", "msaa:4"],
     "memory_system.binned": [true, false]})");
+  write_text(folder_ / "specs.json",
+             R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam", "beam:bits=60"]})");
   const Names before = folder_.list();
   expect_error(sweep(), 1, "missing.json");
+  expect_error({"sweep", path("specs.json"), "-o", path("out")}, 2,
+               "specs.json: /techniques/1: technique 'beam:bits=60'");
   expect_error({"sweep", path("sized.json"), "-o", path("out")}, 1, "cannot be 5 x 5 pixels");
   expect_error({"sweep", path("frames.json"), "-o", path("out")}, 1, "0 to 1, found 2");
   expect_error({"sweep", path("bins.json"), "-o", path("out")}, 1,

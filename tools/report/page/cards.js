@@ -20,7 +20,7 @@ function cardRows(card, implementation) {
     ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes, "bytes on chip")} per bin of ${numberText(card.bin_pixels)} pixels`,
       `pixels are ${card.pixels_on_chip ? "on chip" : "in memory"}`]],
     ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [card.off_chip]],
-    ["time at once", time?.at_once, (value) => `${shortText(value)} ms`,
+    ["time", time?.at_once, (value) => `${shortText(value)} ms`,
       time ? timeLines(time) : []],
     ["RMSE", card.rmse, shortText, []],
     ["EMR", card.emr, (value) => bound[card.emr_bound] + shortText(value), []],
@@ -51,8 +51,8 @@ function startCards(summary) {
   fillSelect(select, summary.implementations);
   byId("implementations").hidden = summary.implementations.length === 0;
   byId("cost-note").textContent = (summary.cards.length === 1 ? "Costs are per frame." : `Costs are per frame; multiples are of ${summary.baseline}.`)
-    + " Times: all units at once and evenly; bins one by one on cores; and one stage after the other. Nine in ten lie in the"
-    + " ranges, if rates are drawn from those of the description.";
+    + " The time in bold is that at once: all units, evenly. On cores, bins come one by one; in turn, stages do. Nine in ten"
+    + " lie in the ranges, if rates are drawn from those of the description.";
   const show = () => byId("cards").replaceChildren(...summary.cards.map((card) => makeCard(card, baseline, select.value)));
   select.addEventListener("change", show);
   show();
