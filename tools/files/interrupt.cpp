@@ -25,11 +25,12 @@ void InterruptGate::wait_for_signal() {
   sigwait(&signals_, &signal);
   if (closing_) return;
   mutex_.lock();  // never unlocked, so that no new file is started
-  for (const std::filesystem::path& file : unfinished_) ::unlink(file.c_str());
   // A terminal may show a line of progress, which the text takes the place of.
   const std::string text = std::string(isatty(STDERR_FILENO) ? "\r\033[K" : "") + "beampipe: stopped" +
                            (kept_.empty() ? "" : "; " + kept_) + "\n";
   [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, text.data(), text.size());
+  // Last, because a file that was named before may still appear while the text is written.
+  for (const std::filesystem::path& file : unfinished_) ::unlink(file.c_str());
   _exit(128 + signal);  // runs no destructors, because other threads are still rendering
 }
 
