@@ -279,7 +279,7 @@ SpecOptions casav_options(CasavOptions& o) {
              "order of fragments: sorted in an A-buffer, near to far from sorted bins, or primitive order"),
       beside(
           "order=near-first or order=stream", [&o] { return o.order != CasavOrder::sorted; },
-          choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"8", 8}},
+          choice("layers", o.layers, {{"1", 1}, {"3", 3}, {"8", 8}},
                  "aggregates that a pixel keeps without an A-buffer"))};
 }
 
@@ -295,7 +295,7 @@ TechniqueKind casav_kind() {
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,fuzzy=mix,extents=slab,slab=full,"
                        "plane=area,thickness=containing",
                        "casav:thickness=none", "casav:mask=exact,depths=positions,overlap=unbounded",
-                       "casav:order=near-first", "casav:order=stream,layers=2"},
+                       "casav:order=near-first", "casav:order=stream,layers=8"},
           .stressed = {"casav", "casav:reading=literal", "casav:storage=text", "casav:storage=float32"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }

@@ -27,7 +27,7 @@ constexpr InspectedSpec kSpecs[] = {
     {"casav", 4e-3, 1e-4},
     {"casav:mask=exact,storage=float32", 1e-5, 1e-4},
     {"casav:order=near-first", 4e-3, 1e-4},
-    {"casav:order=stream,layers=2", 4e-3, 1e-4},
+    {"casav:order=stream,layers=8", 4e-3, 1e-4},
     {"alpha", 4e-3, 2e-3},
     {"z3", 4e-3, 1e-6},
     {"z3:shape=128x3", 4e-3, 1e-6},

@@ -81,7 +81,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"bits must be 32 or 256", {"beam:order=sorted,bits=64", "beam:order=sorted,bits="}},
       {"storage must be packed or float32", {"beam:order=sorted,storage=text"}},
       {"storage needs bits=256", {"beam:order=sorted,bits=32,storage=float32"}},
-      {"pool must be 16, 24, 30, 40, 50, 60, 80, 96 or 128", {"beam:pool=7"}},
+      {"pool must be 16, 24, 30, 40, 60, 80 or 128", {"beam:pool=7"}},
       {"bits must be 32, 64, 128 or 256", {"beam:bits=48,pool=16"}},
       {"filter must be sampler, anisotropic, 1, 4 or 16", {"beam:filter=2", "msaa:8,filter=", "alpha:filter=yes"}},
       {"tolerance needs at=adaptive", {"beam:at=visible,tolerance=0.1"}},
