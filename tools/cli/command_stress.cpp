@@ -9,7 +9,6 @@
 #include "pipeline/technique_table.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/run_arguments.h"
-#include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/progress.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
@@ -25,7 +24,6 @@ struct StressArguments {
   std::vector<std::string> cases;
   std::string output;
   int threads = 0;
-  bool heavy = false;
 };
 
 // "exact", "2^-12.3" or "nan", with a star if the limit is larger than that of the format, and a ! beyond the limit.
@@ -67,7 +65,7 @@ void save_trace(const HardCase& hard_case, const std::filesystem::path& folder, 
 
 // The cases that are named, or all. Throws UsageError if no case has a name.
 std::vector<HardCase> chosen_cases(const StressArguments& arguments) {
-  std::vector<HardCase> cases = hard_cases(arguments.heavy);
+  std::vector<HardCase> cases = hard_cases();
   if (arguments.cases.empty()) return cases;
   std::set<std::string> missing(arguments.cases.begin(), arguments.cases.end());
   const std::set<std::string> named = missing;
@@ -85,10 +83,6 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
     require_writable_folder(folder / "traces");
     require_writable_file(folder / "stress.json");
   }
-  for (const HardCase& hard_case : cases)
-    for (const Technique& technique : techniques)
-      require_memory(hard_case.trace, hard_case.trace.frames[0], technique.working_bytes_per_pixel,
-                     hard_case.name + " with " + technique.spec, machine_memory());
   FrameInput options;
   options.threads = arguments.threads;
   options.memory.modelled = false;  // only the pictures are compared
@@ -142,10 +136,6 @@ void add_stress_command(CommandLine& line, InterruptGate& gate) {
       "has no NaN)");
   command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
-  command.add_flag(
-      "--heavy", arguments->heavy,
-      "add deep_pixel_1000000, which takes a gigabyte and a minute, and widest_and_highest with 16384 x 16384 pixels, "
-      "which takes 5 to 9 GB and a minute or two for each technique (taa and dvm need 30 GB: name others with -t)");
   command.footer(
       R"(Each cell of the table is the largest error over all pixels and R, G, B, A. Techniques that sample are compared with
 exact values at their samples, all others with exact areas. With materials, "exact" means that the picture has only

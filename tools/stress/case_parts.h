@@ -90,8 +90,8 @@ inline constexpr const char* kMask = "areas of partly hidden triangles are estim
 
 inline constexpr const char* kSlopes = "layers store slopes in 8 bits, which moves intersections by a few positions";
 
-// The limits of techniques that treat a mask without a gap as full coverage, if so many edges cut a pixel.
-StatedLimits full_masks(int edges = 1);
+// The limits of techniques that treat a mask without a gap as full coverage, if one edge cuts a pixel.
+StatedLimits full_masks();
 
 // The limits of techniques that estimate or count areas by mask positions; with fewer than 256 positions, counts are
 // worse by as much.
@@ -114,7 +114,8 @@ std::vector<HardCase> frame_cases();
 std::vector<HardCase> surface_cases();
 std::vector<HardCase> owner_cases();
 std::vector<HardCase> state_cases();
-std::vector<HardCase> heavy_cases();
-HardCase crowded_bin();  // 131,072 triangles in one bin
+
+// 131,072 triangles in one bin, so that a file of it would be large: not one of hard_cases().
+HardCase crowded_bin();
 
 }  // namespace beampipe

@@ -39,25 +39,22 @@ HardCase one_pixel() {
           {{ErrorSource::quads_over_the_border, {0.3, "its 2x2 quad extends beyond the frame"}}}};
 }
 
-HardCase widest(std::uint32_t width, std::uint32_t height, const std::string& name, int edges_in_a_pixel) {
+HardCase widest(std::uint32_t width, std::uint32_t height, const std::string& name) {
   Screen screen(width, height);
   screen.triangle({width - 3.2, height * 0.1}, {width - 0.1, height * 0.5}, {width - 2.9, height * 0.9}, 0.5, kRed);
   return {name,
           "a viewport of " + std::to_string(width) + " x " + std::to_string(height),
           screen.trace(),
           {},
-          full_masks(edges_in_a_pixel)};
+          full_masks()};
 }
 
-HardCase deep_pixel(int layers) {
+HardCase deep_pixel() {
+  constexpr int kLayers = 5000;
   Screen screen(1, 1);
-  for (int i = layers; i-- > 0;)
-    screen.triangle({-1, -1}, {3, -1}, {-1, 3}, static_cast<double>(i + 1) / (layers + 2), i == 0 ? kRed : kBlue);
-  HardCase result{"deep_pixel_" + std::to_string(layers),
-                  std::to_string(layers) + " fragments that cover one pixel, from far to near",
-                  {},
-                  {},
-                  {}};
+  for (int i = kLayers; i-- > 0;)
+    screen.triangle({-1, -1}, {3, -1}, {-1, 3}, static_cast<double>(i + 1) / (kLayers + 2), i == 0 ? kRed : kBlue);
+  HardCase result{"deep_pixel_5000", "5000 fragments that cover one pixel, from far to near", {}, {}, {}};
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   return result;
@@ -66,13 +63,8 @@ HardCase deep_pixel(int layers) {
 }  // namespace
 
 std::vector<HardCase> frame_cases() {
-  return {not_finite(),    empty_frame(), one_pixel(), widest(16384, 2, "widest", 1), widest(2, 16384, "highest", 1),
-          deep_pixel(5000)};
-}
-
-std::vector<HardCase> heavy_cases() {
-  // In the last case the sides are so steep that in many rows both lie near the borders of one column of pixels.
-  return {deep_pixel(1'000'000), crowded_bin(), widest(16384, 16384, "widest_and_highest", 2)};
+  return {not_finite(), empty_frame(), one_pixel(), widest(16384, 2, "widest"), widest(2, 16384, "highest"),
+          deep_pixel()};
 }
 
 }  // namespace beampipe

@@ -11,10 +11,10 @@ StatedLimit per_position(double error, const char* reason) {
 
 }  // namespace
 
-StatedLimits full_masks(int edges) {
-  return {{ErrorSource::estimated_areas, {[edges](int positions) { return edges * largest_cut(positions); }, kFull}},
-          {ErrorSource::counted_positions, per_position(edges * largest_cut(256), kFull)},
-          {ErrorSource::published_merges, {edges * largest_cut(256), kFull}}};
+StatedLimits full_masks() {
+  return {{ErrorSource::estimated_areas, {largest_cut, kFull}},
+          {ErrorSource::counted_positions, per_position(largest_cut(256), kFull)},
+          {ErrorSource::published_merges, {largest_cut(256), kFull}}};
 }
 
 StatedLimits mask_limits(double error, const char* reason) {
@@ -46,7 +46,7 @@ double largest_cut(int positions) {
   }
 }
 
-std::vector<HardCase> hard_cases(bool with_heavy) {
+std::vector<HardCase> hard_cases() {
   std::vector<HardCase> cases;
   for (const auto& some :
        {coverage_cases(), depth_cases(), frame_cases(), owner_cases(), state_cases(), surface_cases()})
@@ -54,8 +54,6 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
   for (HardCase& hard_case : cases)
     hard_case.limits[ErrorSource::shared_shading_samples] = {
         0.75, "triangles of a draw share the colours of a quad's four samples"};
-  if (with_heavy)
-    for (HardCase& heavy : heavy_cases()) cases.push_back(std::move(heavy));
   return cases;
 }
 

@@ -51,7 +51,7 @@ struct HardCase {
 // positions (cell_patterns in simd/sample_pattern.h).
 double largest_cut(int positions);
 
-// All cases in a fixed order; `with_heavy` adds those that take gigabytes and minutes.
-std::vector<HardCase> hard_cases(bool with_heavy);
+// All cases in a fixed order.
+std::vector<HardCase> hard_cases();
 
 }  // namespace beampipe

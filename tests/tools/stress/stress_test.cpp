@@ -6,6 +6,7 @@
 #include "simd/sample_pattern.h"
 #include "tests/pipeline/test_traces.h"
 #include "tests/traces/test_folder.h"
+#include "tools/stress/case_parts.h"
 #include "tools/stress/exact.h"
 #include "tools/stress/judge.h"
 
@@ -88,7 +89,7 @@ using SavedCases = FolderTest;
 
 // JSON has no NaN and no infinity, which not_finite is made of.
 TEST_F(SavedCases, CanBeReadAgain) {
-  for (const HardCase& hard_case : hard_cases(false)) {
+  for (const HardCase& hard_case : hard_cases()) {
     if (hard_case.name == "not_finite") continue;
     try {
       write_trace(hard_case.trace, path("case.json"));
@@ -113,7 +114,7 @@ TEST(Judge, NoticesThatSurfacesWhichVaryAreMissing) {
     return result;
   };
   int judged = 0;
-  for (const HardCase& hard_case : hard_cases(false)) {
+  for (const HardCase& hard_case : hard_cases()) {
     if (!hard_case.between && hard_case.name != "layers") continue;
     EXPECT_FALSE(Judge(hard_case).judge(nothing, {}).passes()) << hard_case.name;
     ++judged;
@@ -125,7 +126,7 @@ TEST(Judge, NoticesThatSurfacesWhichVaryAreMissing) {
 TEST(HardCases, AreWithinTheLimitsOfEachTechnique) {
   FrameInput options;
   options.memory.modelled = false;
-  for (const HardCase& hard_case : hard_cases(false)) {
+  for (const HardCase& hard_case : hard_cases()) {
     Judge judge(hard_case);
     for (const std::string& spec : stressed_specs()) {
       const Technique technique = parse_technique(spec);
@@ -138,18 +139,12 @@ TEST(HardCases, AreWithinTheLimitsOfEachTechnique) {
   }
 }
 
-// 131,072 triangles, so that files of it would be large: one of the heavy cases.
 TEST(CrowdedBin, IsExact) {
-  for (const HardCase& hard_case : hard_cases(true)) {
-    if (hard_case.name != "crowded_bin") continue;
-    for (const char* spec : {"beam", "beam:bits=64,pool=16", "beam:order=stream", "msaa:8"}) {
-      FrameInput options;
-      options.memory.modelled = false;
-      EXPECT_TRUE(Judge(hard_case).judge(parse_technique(spec), options).passes()) << spec;
-    }
-    return;
-  }
-  FAIL() << "there is no such case";
+  const HardCase hard_case = crowded_bin();
+  FrameInput options;
+  options.memory.modelled = false;
+  for (const char* spec : {"beam", "beam:bits=64,pool=16", "beam:order=stream", "msaa:8"})
+    EXPECT_TRUE(Judge(hard_case).judge(parse_technique(spec), options).passes()) << spec;
 }
 
 }  // namespace beampipe::stress_test
