@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostTasks = 256;  // that --slurm submits unless it is told to; Slurm allows 1000 by default
+constexpr std::size_t kMostTasks = 256;  // that --slurm submits; Slurm allows 1000 by default
 
 constexpr const char* kSweepFooter =
     R"(PLAN is a JSON file. Each list of values is an axis of a grid; the table has a row for every combination:
@@ -49,7 +49,6 @@ Examples:
 struct SweepArguments {
   std::string plan, output, part, reference_cache;
   int jobs = 0, threads = 0;
-  std::uint32_t tasks = 0;
   std::vector<std::string> start, plots, sbatch;
   bool slurm = false, dry_run = false, merge = false, allow_outside = false;
 };
@@ -154,7 +153,7 @@ std::vector<std::size_t> unfinished_parts(const Sweep& sweep, std::size_t count)
 void submit(Sweep& sweep, const std::vector<PlotColumns>& plots) {
   const SweepArguments& arguments = sweep.arguments;
   SlurmRequest request;
-  request.all_parts = std::min(sweep.jobs.size(), arguments.tasks > 0 ? arguments.tasks : kMostTasks);
+  request.all_parts = std::min(sweep.jobs.size(), kMostTasks);
   request.parts = unfinished_parts(sweep, request.all_parts);
   if (request.parts.empty()) return merge(sweep, plots);
   request.command =
@@ -239,13 +238,10 @@ void add_sweep_command(CommandLine& line, const std::vector<std::string>& start,
   command.add_flag("--allow-outside", arguments->allow_outside, "allow traces to name files outside their own folder");
   Command cluster = command.add_group("On several machines, which share the output folder");
   cluster.add_flag("--slurm", arguments->slurm,
-                   "submit the sweep to Slurm: an array of tasks, and a job that waits for them and makes the table");
+                   "submit the sweep to Slurm: an array of tasks, one for each group of cells that share a rendering "
+                   "but at most 256, and a job that waits for them and makes the table");
   cluster.add_flag("--dry-run", arguments->dry_run,
                    "with --slurm: write the scripts, and print the commands that would submit them");
-  cluster
-      .add("--tasks", arguments->tasks,
-           "the number of tasks (default: one for each group of cells that share a rendering, at most 256)")
-      .between(1, 100000);
   cluster.add("--sbatch", arguments->sbatch, "options of sbatch for these jobs, without their dashes: time=2:00:00");
   cluster.add("--part", arguments->part, "I/N: do part I of N alone (I from 0), and make no table");
   cluster.add_flag("--merge", arguments->merge, "render nothing, and make the table of the results that are there");
