@@ -18,7 +18,7 @@ namespace beampipe {
 namespace {
 
 constexpr int kPositions = 256, kTileSize = 32;
-using Pixels = std::vector<StoredAggregate<8, HalfBits>>;
+using Pixels = std::vector<StoredAggregate<8>>;
 
 // The input of every stage for one tile.
 struct TileWork {

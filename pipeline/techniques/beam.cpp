@@ -7,6 +7,7 @@
 #include "pipeline/units/pooled_unit.h"
 #include "pipeline/units/raster_units.h"
 #include "pipeline/units/regions_unit.h"
+#include "stages/data/mask_words.h"
 
 namespace beampipe {
 namespace {
@@ -73,7 +74,7 @@ FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
 }
 
 FrameResult render_beam(const FrameJob& job, const BeamOptions& beam) {
-  return with_words(beam.positions, [&]<std::size_t Words>() { return render_words<Words>(job, beam); });
+  return with_words<1, 2, 4, 8>(beam.positions, [&]<std::size_t Words>() { return render_words<Words>(job, beam); });
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
 #include "stages/data/beam_aggregate.h"
+#include "stages/data/mask_words.h"
 
 namespace beampipe {
 namespace {
@@ -16,20 +17,17 @@ namespace {
 enum class Window { run, one };  // triangles that are composed at once
 
 struct SortedOptions {
-  int positions = 256;  // of the mask; together with `storage` one of BEAMPIPE_STORED_AGGREGATES
-  Storage storage = Storage::packed;
+  int positions = 256;  // of the mask
   Window window = Window::run;
 };
 
 Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
   const auto mask_bytes = static_cast<std::uint32_t>(sorted.positions) / 8;
-  return {
-      .surfaces = {{"coverage", "R32F", 4},
-                   {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
-                   sorted.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}}};
+  return {.surfaces = {
+              {"coverage", "R32F", 4}, {"mask", times("R32UI", mask_bytes / 4), mask_bytes}, {"color", "RGB16F", 6}}};
 }
 
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 FrameResult render_windows(const FrameJob& job, const SortedOptions& sorted) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
@@ -45,7 +43,7 @@ FrameResult render_windows(const FrameJob& job, const SortedOptions& sorted) {
     ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
     BeamFragmentUnit make_fragments(bin, fragment_options);
     ShadeUnit shade(bin);
-    ComposeBeamUnit<Words, Channel> compose(bin, positions);
+    ComposeBeamUnit<Words> compose(bin, positions);
     std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
 
     const std::vector<Pair>& pairs = raster();
@@ -62,7 +60,7 @@ FrameResult render_windows(const FrameJob& job, const SortedOptions& sorted) {
   });
 }
 
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 FrameResult render_one_by_one(const FrameJob& job, const SortedOptions& sorted) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionGrid grid(sorted.positions);
@@ -80,7 +78,7 @@ FrameResult render_one_by_one(const FrameJob& job, const SortedOptions& sorted) 
     BeamFragmentUnit make_fragments(bin, fragment_options);
     ABufferUnit a_buffer(bin, fragment_bytes, fragment_bytes);
     ShadeUnit shade(bin);
-    ComposeBeamUnit<Words, Channel> compose(bin, cell_positions(sorted.positions));
+    ComposeBeamUnit<Words> compose(bin, cell_positions(sorted.positions));
     std::vector<float>& merges = bin.pixel_counter("merges");
 
     const std::vector<Fragment>& fragments = make_fragments.queued(raster());
@@ -104,9 +102,8 @@ FrameResult render_one_by_one(const FrameJob& job, const SortedOptions& sorted) 
 }
 
 FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
-  return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
-    return sorted.window == Window::run ? render_windows<Words, Channel>(job, sorted)
-                                        : render_one_by_one<Words, Channel>(job, sorted);
+  return with_words<1, 8>(sorted.positions, [&]<std::size_t Words>() {
+    return sorted.window == Window::run ? render_windows<Words>(job, sorted) : render_one_by_one<Words>(job, sorted);
   });
 }
 
@@ -125,18 +122,13 @@ TechniqueKind beam_sorted_kind() {
               "an A-buffer sorts the triangles of a pixel by depth; their fragments are composed near to far into one "
               "aggregate that conserves area, until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
-          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,window=one"},
+          .examples = {"beam:order=sorted", "beam:order=sorted,window=one"},
           .texture_taps = 16,
-          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32",
-                       "beam:order=sorted,window=one"},
+          .stressed = {"beam:order=sorted", "beam:order=sorted,bits=32", "beam:order=sorted,window=one"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {
                 return {choice("bits", o.positions, {{"32", 32}, {"256", 256}}, "positions of the mask"),
-                        beside(
-                            "bits=256", [&o] { return o.positions == 256; },
-                            choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
-                                   "format of the aggregate's colour: fp16, or float32")),
                         choice("window", o.window, {{"run", Window::run}, {"one", Window::one}},
                                "what is composed at once: a run of triangles whose depths overlap, or one triangle, by "
                                "the depths of their centroids, which loses area where they cross or meet")};

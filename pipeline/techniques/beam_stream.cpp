@@ -9,6 +9,7 @@
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/pooled_unit.h"
 #include "pipeline/units/raster_units.h"
+#include "stages/data/mask_words.h"
 
 namespace beampipe {
 namespace {
@@ -69,7 +70,7 @@ FrameResult render_words(const FrameJob& job) {
 }
 
 FrameResult render_stream(const FrameJob& job, const StreamOptions& stream) {
-  return with_words(stream.positions, [&]<std::size_t Words>() { return render_words<Words>(job); });
+  return with_words<4, 8>(stream.positions, [&]<std::size_t Words>() { return render_words<Words>(job); });
 }
 
 }  // namespace

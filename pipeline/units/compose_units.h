@@ -46,7 +46,7 @@ class WindowsUnit {
 void charge_aggregates(Bin& bin, const std::vector<Surface>& framebuffer, const std::vector<bool>& written,
                        const std::vector<bool>& full);
 
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 class ComposeBeamUnit {
  public:
   ComposeBeamUnit(Bin& bin, const PositionSet& positions)
@@ -72,7 +72,7 @@ class ComposeBeamUnit {
   Bin& bin_;
   BinStage stage_;
   const PositionSet& positions_;
-  std::vector<StoredAggregate<Words, Channel>> pixels_;
+  std::vector<StoredAggregate<Words>> pixels_;
   std::vector<float> areas_;  // what each of the last fragments added to its pixel
 };
 

@@ -21,8 +21,8 @@ struct PixelAggregate {
   glm::vec3 color{0.0f};  // times area
 };
 
-template <std::size_t Words, class Channel>
-PixelAggregate load(const StoredAggregate<Words, Channel>& stored) {
+template <std::size_t Words>
+PixelAggregate load(const StoredAggregate<Words>& stored) {
   PixelAggregate aggregate;
   std::memcpy(aggregate.mask.words.data(), stored.mask, sizeof stored.mask);
   aggregate.taken.area = stored.area;
@@ -30,15 +30,15 @@ PixelAggregate load(const StoredAggregate<Words, Channel>& stored) {
   return aggregate;
 }
 
-template <std::size_t Words, class Channel>
-void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& stored) {
+template <std::size_t Words>
+void store(const PixelAggregate& aggregate, StoredAggregate<Words>& stored) {
   std::memcpy(stored.mask, aggregate.mask.words.data(), sizeof stored.mask);
   stored.area = aggregate.taken.area;
-  for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
+  for (int c = 0; c < 3; ++c) stored.color[c] = HalfBits(aggregate.color[c]);
 }
 
-template <std::size_t Words, class Channel>
-void tell_stored(const StoredAggregate<Words, Channel>& stored, PixelObserver& observer) {
+template <std::size_t Words>
+void tell_stored(const StoredAggregate<Words>& stored, PixelObserver& observer) {
   const PixelAggregate aggregate = load(stored);
   observer.composes(static_cast<std::uint32_t>(aggregate.mask.count()), aggregate.taken.area, aggregate.color);
 }
@@ -206,9 +206,9 @@ class PixelComposer {
 
 }  // namespace
 
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas,
+                    std::vector<StoredAggregate<Words>>& pixels, std::vector<float>& areas,
                     const PixelObservers* observers) {
   PixelComposer composer(positions);
   areas.resize(fragments.size());
@@ -223,12 +223,12 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
     store(aggregate, pixels[pixel]);
     if (observer) tell_stored(pixels[pixel], *observer);
   }
-  charge<Words, Channel>(composer.work(), counters);
+  charge<Words>(composer.work(), counters);
 }
 
-template <std::size_t Words, class Channel>
-void compose_whole(const WholePixels& whole, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels, const PixelObservers* observers) {
+template <std::size_t Words>
+void compose_whole(const WholePixels& whole, StageCounters& counters, std::vector<StoredAggregate<Words>>& pixels,
+                   const PixelObservers* observers) {
   for (const Pair& pair : whole.pairs) {
     const std::size_t index = whole.tile.index(pair.x, pair.y);
     const glm::vec3 color =
@@ -237,23 +237,23 @@ void compose_whole(const WholePixels& whole, StageCounters& counters,
     auto& pixel = pixels[index];
     std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
-    for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(color[c]);
+    for (int c = 0; c < 3; ++c) pixel.color[c] = HalfBits(color[c]);
     if (PixelObserver* const observer = observer_at(observers, index)) {
       observer->takes(pair.triangle, first_words(Words));
       observer->adds(pair.triangle, 1.0, color);
       tell_stored(pixel, *observer);
     }
   }
-  charge_whole<Words, Channel>(whole.pairs.size(), counters);
+  charge_whole<Words>(whole.pairs.size(), counters);
 }
 
-#define BEAMPIPE_COMPOSE(words, channel)                                                                         \
-  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                 \
-                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&,               \
-                               const PixelObservers*);                                                           \
-  template void compose_whole(const WholePixels&, StageCounters&, std::vector<StoredAggregate<words, channel>>&, \
+#define BEAMPIPE_COMPOSE(words)                                                                                   \
+  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                  \
+                               std::vector<StoredAggregate<words>>&, std::vector<float>&, const PixelObservers*); \
+  template void compose_whole(const WholePixels&, StageCounters&, std::vector<StoredAggregate<words>>&,           \
                               const PixelObservers*);
-BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
+BEAMPIPE_COMPOSE(1)
+BEAMPIPE_COMPOSE(8)
 #undef BEAMPIPE_COMPOSE
 
 }  // namespace beampipe

@@ -25,9 +25,9 @@ namespace beampipe {
 // Adds `fragments` to `pixels`, of which there is one per pixel of the tile; at first they are empty (zeros). There is
 // at most one window per pixel: its fragments follow each other, in primitive order. Sets areas[i] to the area that
 // fragments[i] adds to its pixel.
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas,
+                    std::vector<StoredAggregate<Words>>& pixels, std::vector<float>& areas,
                     const PixelObservers* observers = nullptr);
 
 // Pixels that a single triangle covers completely and hides.
@@ -40,21 +40,21 @@ struct WholePixels {
 
 // Composes such pixels, which must be empty. The result is that of compose_window for the triangle's fragment, which is
 // not needed here.
-template <std::size_t Words, class Channel>
-void compose_whole(const WholePixels& whole, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels, const PixelObservers* observers = nullptr);
+template <std::size_t Words>
+void compose_whole(const WholePixels& whole, StageCounters& counters, std::vector<StoredAggregate<Words>>& pixels,
+                   const PixelObservers* observers = nullptr);
 
 // Are all positions of the pixel taken, so that nothing farther can be visible in it?
-template <std::size_t Words, class Channel>
-bool is_closed(const StoredAggregate<Words, Channel>& pixel) {
+template <std::size_t Words>
+bool is_closed(const StoredAggregate<Words>& pixel) {
   std::uint32_t mask[Words], all = ~0u;  // a copy, because the words of a packed pixel may not be aligned
   std::memcpy(mask, pixel.mask, sizeof mask);
   for (const std::uint32_t word : mask) all &= word;
   return all == ~0u;
 }
 
-template <std::size_t Words, class Channel>
-std::vector<PixelColor> composed_colors(const std::vector<StoredAggregate<Words, Channel>>& pixels) {
+template <std::size_t Words>
+std::vector<PixelColor> composed_colors(const std::vector<StoredAggregate<Words>>& pixels) {
   std::vector<PixelColor> colors;
   colors.reserve(pixels.size());
   for (const auto& pixel : pixels) colors.push_back({pixel.area, {pixel.color[0], pixel.color[1], pixel.color[2]}});
@@ -62,8 +62,8 @@ std::vector<PixelColor> composed_colors(const std::vector<StoredAggregate<Words,
 }
 
 // Per pixel: is it closed?
-template <std::size_t Words, class Channel>
-std::vector<bool> closed_pixels(const std::vector<StoredAggregate<Words, Channel>>& pixels) {
+template <std::size_t Words>
+std::vector<bool> closed_pixels(const std::vector<StoredAggregate<Words>>& pixels) {
   std::vector<bool> closed;
   closed.reserve(pixels.size());
   for (const auto& pixel : pixels) closed.push_back(is_closed(pixel));
@@ -71,8 +71,8 @@ std::vector<bool> closed_pixels(const std::vector<StoredAggregate<Words, Channel
 }
 
 // Per pixel: does anything cover it?
-template <std::size_t Words, class Channel>
-std::vector<bool> covered_pixels(const std::vector<StoredAggregate<Words, Channel>>& pixels) {
+template <std::size_t Words>
+std::vector<bool> covered_pixels(const std::vector<StoredAggregate<Words>>& pixels) {
   std::vector<bool> covered;
   covered.reserve(pixels.size());
   for (const auto& pixel : pixels) covered.push_back(pixel.area > 0);

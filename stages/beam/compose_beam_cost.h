@@ -102,12 +102,9 @@ inline OperationCounts closing_cost() {
 }
 
 // fp16 colours are converted when an aggregate is loaded and when it is stored.
-template <class Channel>
-constexpr OperationCounts format_cost() {
-  return {.convert = std::is_same_v<Channel, HalfBits> ? 2 * 3 : 0};
-}
+inline constexpr OperationCounts kFormatCost{.convert = 2 * 3};
 
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 void charge(const ComposeWork& work, StageCounters& counters) {
   static const UnitCost of_mask = mask_cost(Words), of_contestant = contest_cost(Words),
                         of_depth_test = depth_test_cost(), of_addition = addition_cost(), of_speck = speck_cost(),
@@ -125,23 +122,23 @@ void charge(const ComposeWork& work, StageCounters& counters) {
   counters.ops += of_surface_test * work.surface_tests;
   counters.ops += of_closed_test * work.windows;
   counters.ops += of_closing * work.closed;
-  counters.ops += format_cost<Channel>() * work.windows;
+  counters.ops += kFormatCost * work.windows;
   counters.bytes_read += work.fragments * conserving_fragment_bytes(32 * Words);
-  counters.bytes_read += work.windows * sizeof(StoredAggregate<Words, Channel>);
-  counters.bytes_written += work.windows * sizeof(StoredAggregate<Words, Channel>);
+  counters.bytes_read += work.windows * sizeof(StoredAggregate<Words>);
+  counters.bytes_written += work.windows * sizeof(StoredAggregate<Words>);
   counters.position_tests += work.depth_tests;
   counters.lanes_used += work.depth_tests;
   counters.lanes_issued += work.fragments * 32 * Words;
 }
 
 // Pixels that one triangle covers: the pair is read, and its colour is converted and stored.
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 void charge_whole(std::uint64_t pixels, StageCounters& counters) {
   counters.items_in += pixels;
   counters.items_out += pixels;
-  if (std::is_same_v<Channel, HalfBits>) counters.ops.convert += 3 * pixels;
+  counters.ops.convert += 3 * pixels;
   counters.bytes_read += pixels * kPairWithDepthBytes;
-  counters.bytes_written += pixels * sizeof(StoredAggregate<Words, Channel>);
+  counters.bytes_written += pixels * sizeof(StoredAggregate<Words>);
 }
 
 }  // namespace beampipe

@@ -16,8 +16,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "simd/depth_plane.h"
@@ -311,22 +309,5 @@ struct PooledPixels {
   std::size_t most_owners;
   std::uint32_t closes_at = ~0u;  // the triangle of the frame from which on the pool is closed
 };
-
-// Calls shape.operator()<Words>() for a mask of so many positions. Throws std::invalid_argument if there is none.
-template <class Shape>
-auto with_words(int positions, Shape&& shape) {
-  switch (positions) {
-    case 32:
-      return shape.template operator()<1>();
-    case 64:
-      return shape.template operator()<2>();
-    case 128:
-      return shape.template operator()<4>();
-    case 256:
-      return shape.template operator()<8>();
-    default:
-      throw std::invalid_argument("no pixel has " + std::to_string(positions) + " positions");
-  }
-}
 
 }  // namespace beampipe

@@ -23,7 +23,6 @@ constexpr InspectedSpec kSpecs[] = {
     {"beam:bits=32,pool=16,bin=8,at=quarters", 0.1, 1e-4},
     {"beam:order=stream", 0.03, 1e-4},
     {"beam:order=sorted", 2e-3, 1e-4},
-    {"beam:order=sorted,storage=float32", 1e-5, 1e-4},
     {"casav", 4e-3, 1e-4},
     {"casav:mask=exact,storage=float32", 1e-5, 1e-4},
     {"casav:order=near-first", 4e-3, 1e-4},

@@ -30,7 +30,7 @@ inline std::vector<Fragment> fragments_of(const SetupTriangles& triangles, const
 
 // Composes the pixels of a tile by the area-conserving rules. Calls each(fragments, areas, pixels as they were, pixels)
 // for each window, before what fills pixels is added. Returns the largest windows too.
-template <std::size_t Words, class Channel, class Each>
+template <std::size_t Words, class Each>
 auto compose_windows(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors, const Tile& tile,
                      Each&& each) {
   const PositionSet positions(cell_patterns(32 * Words));
@@ -38,7 +38,7 @@ auto compose_windows(const SetupTriangles& triangles, const std::vector<glm::vec
   const BeamFragmentOptions options = grid_options(grid, conserving_fragment_bytes(32 * Words));
   StageCounters counters;
   std::vector<Pair> pairs, window, whole;
-  std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
+  std::vector<StoredAggregate<Words>> pixels(tile.pixels());
   ClosedDepth closed(tile);
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs, {&closed});
   const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kStoredPairBytes, counters);
@@ -48,7 +48,7 @@ auto compose_windows(const SetupTriangles& triangles, const std::vector<glm::vec
     std::vector<float> areas;
     beam_fragment(triangles, window, tile, options, counters, fragments);
     shade_visible(colors, fragments, counters);
-    const std::vector<StoredAggregate<Words, Channel>> before = pixels;
+    const std::vector<StoredAggregate<Words>> before = pixels;
     compose_window(fragments, positions, counters, pixels, areas);
     each(fragments, areas, before, pixels);
     if (testing::Test::HasFatalFailure()) break;
@@ -72,8 +72,8 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
                  .positions = {pattern},
                  .table = &table,
                  .fragment_bytes = sizeof(SlidesAggregate),
-                 .tiny_positions = tiny_positions}, fragments.counters,
-                fragments.list);
+                 .tiny_positions = tiny_positions},
+                fragments.counters, fragments.list);
   return fragments;
 }
 

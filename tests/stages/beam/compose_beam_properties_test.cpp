@@ -8,14 +8,15 @@
 namespace beampipe::compose_beam_properties_test {
 
 constexpr Tile kTile{0, 0, 12, 10};
-constexpr float kRounding = 1e-5f;  // of a sum in float32 over the fragments of a pixel
+constexpr float kRounding = 1e-5f;         // of a sum in float32 over the fragments of a pixel
+constexpr float kColorRounding = 0x1p-12;  // of a colour up to 1, by each window that stores it
 
 template <std::size_t Words>
-using Pixels = std::vector<StoredAggregate<Words, float>>;
+using Pixels = std::vector<StoredAggregate<Words>>;
 
 // Compares each pixel after its windows with what it was earlier. The area is the sum of the old and the added area, at
-// most 1, and exactly 1 if the mask has no gap. The mask is the union of the old mask and the added ones. A colour lies
-// between the smallest and the largest added colour.
+// most 1, and exactly 1 if the mask has no gap. The mask is the union of the old mask and the added ones. The added
+// colour lies between the smallest and the largest of the fragments; it is scaled as the area is.
 template <std::size_t Words>
 void expect_kept(const Pixels<Words>& before, const Pixels<Words>& after, const std::vector<Fragment>& fragments,
                  const std::vector<float>& areas, float least, float greatest) {
@@ -33,9 +34,11 @@ void expect_kept(const Pixels<Words>& before, const Pixels<Words>& after, const 
     ASSERT_LE(after[p].area, 1.0f);
     for (std::size_t w = 0; w < Words; ++w)
       ASSERT_EQ(+after[p].mask[w], before[p].mask[w] | masks[p].words[w]) << "word " << w;
+    const float scale = is_closed(after[p]) && added[p] > 0 ? 1.0f / (before[p].area + added[p]) : 1.0f;
     for (std::size_t c = 0; c < 3; ++c) {
-      ASSERT_GE(+after[p].color[c], least * after[p].area - kRounding);
-      ASSERT_LE(+after[p].color[c], greatest * after[p].area + kRounding);
+      const float old = before[p].color[c], found = after[p].color[c];
+      ASSERT_GE(found, scale * (old + least * added[p]) - kColorRounding - kRounding);
+      ASSERT_LE(found, scale * (old + greatest * added[p]) + kColorRounding + kRounding);
     }
   }
 }
@@ -50,12 +53,12 @@ std::uint64_t compose_random(Random& random) {
     colors.emplace_back(random.real32(kLeast, kGreatest), random.real32(kLeast, kGreatest),
                         random.real32(kLeast, kGreatest));
   std::uint64_t merged = 0;
-  compose_windows<Words, float>(triangles, colors, kTile,
-                                [&](const std::vector<Fragment>& fragments, const std::vector<float>& areas,
-                                    const Pixels<Words>& before, const Pixels<Words>& after) {
-                                  expect_kept<Words>(before, after, fragments, areas, kLeast, kGreatest);
-                                  merged += fragments.size();
-                                });
+  compose_windows<Words>(triangles, colors, kTile,
+                         [&](const std::vector<Fragment>& fragments, const std::vector<float>& areas,
+                             const Pixels<Words>& before, const Pixels<Words>& after) {
+                           expect_kept<Words>(before, after, fragments, areas, kLeast, kGreatest);
+                           merged += fragments.size();
+                         });
   return merged;
 }
 

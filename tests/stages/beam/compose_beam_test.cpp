@@ -10,19 +10,18 @@ namespace beampipe::compose_beam_test {
 
 const Tile kPixel{0, 0, 1, 1};
 
-template <std::size_t Words, class Channel>
+template <std::size_t Words>
 std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
                                     const Tile& tile, std::vector<float>* largest) {
-  const auto [pixels, windows] = compose_windows<Words, Channel>(triangles, colors, tile, [](const auto&...) {});
+  const auto [pixels, windows] = compose_windows<Words>(triangles, colors, tile, [](const auto&...) {});
   if (largest) *largest = windows;
   return composed_colors(pixels);
 }
 
-template <class Channel = float>
 std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
                                  const Tile& tile, int bits, std::vector<float>* largest = nullptr) {
-  if (bits == 32) return composed_as<1, HalfBits>(triangles, colors, tile, largest);
-  return composed_as<8, Channel>(triangles, colors, tile, largest);
+  if (bits == 32) return composed_as<1>(triangles, colors, tile, largest);
+  return composed_as<8>(triangles, colors, tile, largest);
 }
 
 TEST(VisibleArea, TheBackgroundGetsWhatIsLeft) {
@@ -75,7 +74,7 @@ TEST(ComposeWindow, ColorIsStoredAsHalfBehindEveryWindow) {
   add_everywhere(triangles, -0.5f);
   const std::vector<glm::vec3> colors = {{0.7f, 0, 0}, {0.1f, 0, 0}};
   const float first = HalfBits(77.0f / 256 * 0.7f);
-  EXPECT_EQ(composed<HalfBits>(triangles, colors, kPixel, 256).at(0).color.r, HalfBits(first + 179.0f / 256 * 0.1f));
+  EXPECT_EQ(composed(triangles, colors, kPixel, 256).at(0).color.r, HalfBits(first + 179.0f / 256 * 0.1f));
 }
 
 TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {

@@ -11,22 +11,20 @@ using namespace twins;
 
 constexpr std::size_t kWords = 8, kPositions = 32 * kWords;
 
-template <class Channel>
-using Stored = StoredAggregate<kWords, Channel>;
+using Stored = StoredAggregate<kWords>;
 
 class ComposeTwins : public SceneTwins {
  protected:
   // Composes `fragments`, which belong to one pixel.
-  template <class Channel>
-  void compose(const Fragment* fragments, std::size_t count, Stored<Channel>& pixel) {
-    const auto format = [](const Float& value) { return std::is_same_v<Channel, float> ? value : converted(value); };
+  void compose(const Fragment* fragments, std::size_t count, Stored& pixel) {
     WideMask taken;
     std::copy_n(pixel.mask, kWords, taken.words.begin());
     std::vector<Seen> seen = owners(fragments, count, taken);
     std::vector<Float> speck_areas(count, Float(0.0f));
     find_specks(fragments, seen, taken, speck_areas);
     Float area = real(pixel.area), positions = real(static_cast<float>(taken.count()));
-    Float color[3] = {format(real(pixel.color[0])), format(real(pixel.color[1])), format(real(pixel.color[2]))};
+    Float color[3] = {converted(real(pixel.color[0])), converted(real(pixel.color[1])),
+                      converted(real(pixel.color[2]))};
     for (const std::size_t i : whole_first(seen)) {
       const Float alpha = real(fragments[i].alpha);
       Float part;
@@ -50,7 +48,7 @@ class ComposeTwins : public SceneTwins {
     }
     std::copy_n(taken.words.begin(), kWords, pixel.mask);
     pixel.area = area.value;
-    for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(format(color[c]).value);
+    for (int c = 0; c < 3; ++c) pixel.color[c] = HalfBits(converted(color[c]).value);
   }
 
   const PositionSet positions_{cell_patterns(kPositions)};
@@ -194,32 +192,28 @@ TEST_P(ComposeTwins, ComposeWindow) {
   std::vector<Fragment> fragments = fragments_of(triangles_, tile_, grid_options(grid, 0));
   shade_visible(shade_triangles(triangles_, trace_.frames[0].lighting), fragments, ignored);
   std::stable_sort(fragments.begin(), fragments.end(), [](const auto& a, const auto& b) { return a.pixel < b.pixel; });
-  const auto compare = [&]<class Channel>(Channel) {
-    std::vector<Stored<Channel>> pixels(tile_.pixels()), twins = pixels;
-    StageCounters counters;
-    twin_ = {}, tests_ = 0;
-    for (std::size_t half = 0; half < 2; ++half) {  // two windows of each pixel
-      std::vector<Fragment> window;
-      for (std::size_t begin = 0, end = 0; begin < fragments.size(); begin = end) {
-        while (end < fragments.size() && fragments[end].pixel == fragments[begin].pixel) ++end;
-        const std::size_t middle = (begin + end) / 2, first = window.size();
-        for (std::size_t i = half ? middle : begin; i < (half ? end : middle); ++i) window.push_back(fragments[i]);
-        if (window.size() > first) compose(&window[first], window.size() - first, twins[fragments[begin].pixel]);
-      }
-      std::vector<float> areas;
-      compose_window(window, positions_, counters, pixels, areas);
+  std::vector<Stored> pixels(tile_.pixels()), twins = pixels;
+  StageCounters counters;
+  twin_ = {}, tests_ = 0;
+  for (std::size_t half = 0; half < 2; ++half) {  // two windows of each pixel
+    std::vector<Fragment> window;
+    for (std::size_t begin = 0, end = 0; begin < fragments.size(); begin = end) {
+      while (end < fragments.size() && fragments[end].pixel == fragments[begin].pixel) ++end;
+      const std::size_t middle = (begin + end) / 2, first = window.size();
+      for (std::size_t i = half ? middle : begin; i < (half ? end : middle); ++i) window.push_back(fragments[i]);
+      if (window.size() > first) compose(&window[first], window.size() - first, twins[fragments[begin].pixel]);
     }
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      ASSERT_TRUE(std::equal(pixels[i].mask, pixels[i].mask + kWords, twins[i].mask)) << i;
-      ASSERT_EQ(float(pixels[i].area), float(twins[i].area)) << i;
-      for (int c = 0; c < 3; ++c) ASSERT_EQ(float(pixels[i].color[c]), float(twins[i].color[c])) << i;
-    }
-    EXPECT_EQ(counters.ops, twin_);
-    EXPECT_EQ(counters.lanes_used, tests_);
-    EXPECT_EQ(counters.lanes_issued, fragments.size() * kPositions);
-  };
-  compare(HalfBits());
-  compare(0.0f);
+    std::vector<float> areas;
+    compose_window(window, positions_, counters, pixels, areas);
+  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    ASSERT_TRUE(std::equal(pixels[i].mask, pixels[i].mask + kWords, twins[i].mask)) << i;
+    ASSERT_EQ(float(pixels[i].area), float(twins[i].area)) << i;
+    for (int c = 0; c < 3; ++c) ASSERT_EQ(float(pixels[i].color[c]), float(twins[i].color[c])) << i;
+  }
+  EXPECT_EQ(counters.ops, twin_);
+  EXPECT_EQ(counters.lanes_used, tests_);
+  EXPECT_EQ(counters.lanes_issued, fragments.size() * kPositions);
 }
 
 BEAMPIPE_ON_EVERY_SCENE(ComposeTwins);

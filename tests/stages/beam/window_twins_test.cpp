@@ -165,7 +165,7 @@ TEST_P(WindowTwins, Windows) {
   const PositionGrid grid(32 * kWords);
   StageCounters ignored, counters, whole_pixels;
   std::vector<Pair> pairs, window, whole;
-  std::vector<StoredAggregate<kWords, HalfBits>> pixels(tile_.pixels());
+  std::vector<StoredAggregate<kWords>> pixels(tile_.pixels());
   const std::vector<glm::vec3> colors(list_.size(), glm::vec3(0.5f));
   conservative_raster(triangles_, list_, tile_, ignored, pairs);
   const ABuffer buffer = a_buffer(sort_records(pairs, tile_), tile_.pixels(), 16, 12, ignored);
