@@ -192,7 +192,7 @@ void merges_of_fragments(benchmark::State& state) {
   count_items(state, fragments.size());
   MergeWork work;
   for (const MergeSteps& each : steps) work.add(each);
-  set_limit(state, casav_merges_cost(work, rules, CasavStorage::float32), fragments.size());
+  set_limit(state, casav_merges_cost(work, rules, CasavStorage::slides), fragments.size());
 }
 BENCHMARK(merges_of_fragments)->Arg(0)->Arg(1);
 

@@ -54,15 +54,9 @@ std::vector<Surface> aggregate_surfaces(const CasavOptions& casav) {
   const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
   if (casav.rules == Rules::over) return {coverage, color};
   const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
-  switch (casav.storage) {
-    case CasavStorage::slides:
-      return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
-    case CasavStorage::text:
-      return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
-    case CasavStorage::float32:
-      break;
-  }
-  return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
+  if (casav.storage == CasavStorage::text)
+    return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
+  return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
 }
 
 Framebuffer casav_framebuffer(const CasavOptions& casav) {
@@ -206,8 +200,7 @@ FrameResult render_casav(const FrameJob& job, const CasavOptions& casav) {
 
 std::vector<ErrorSource> error_sources(const CasavOptions& options) {
   if (options.rules == Rules::over) return {ErrorSource::independent_fragments};
-  std::vector<ErrorSource> sources = {ErrorSource::published_merges};
-  if (options.storage != CasavStorage::float32) sources.push_back(ErrorSource::merges_in_fp16);
+  std::vector<ErrorSource> sources = {ErrorSource::published_merges, ErrorSource::merges_in_fp16};
   if (options.storage == CasavStorage::text) sources.push_back(ErrorSource::merges_of_half_slopes);
   return sources;
 }
@@ -271,9 +264,8 @@ SpecOptions casav_options(CasavOptions& o) {
           "thickness", o.merge.thickness,
           {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}, {"none", R::Thickness::none}},
           "thickness after a merge: the larger one, one that contains all merged fragments, or none")),
-      choice("storage", o.storage,
-             {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}, {"float32", CasavStorage::float32}},
-             "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
+      choice("storage", o.storage, {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}},
+             "formats of the aggregate: as in the talk's slides, or as in the paper's text"),
       choice("order", o.order,
              {{"sorted", CasavOrder::sorted}, {"near-first", CasavOrder::near_first}, {"stream", CasavOrder::stream}},
              "order of fragments: sorted in an A-buffer, near to far from sorted bins, or primitive order"),
@@ -296,7 +288,7 @@ TechniqueKind casav_kind() {
                        "plane=area,thickness=containing",
                        "casav:thickness=none", "casav:mask=exact,depths=positions,overlap=unbounded",
                        "casav:order=near-first", "casav:order=stream,layers=8"},
-          .stressed = {"casav", "casav:reading=literal", "casav:storage=text", "casav:storage=float32"},
+          .stressed = {"casav", "casav:reading=literal", "casav:storage=text"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }
 

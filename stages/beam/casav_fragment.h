@@ -56,15 +56,8 @@ inline FragmentOf<Counted<float>, Counted<std::uint32_t>> counted_fragment(Opera
 
 // How many numbers of a stored aggregate must be converted to float32.
 constexpr std::uint64_t packed_numbers(CasavStorage storage) {
-  switch (storage) {
-    case CasavStorage::slides:
-      return 3;  // colour
-    case CasavStorage::text:
-      return 6;  // colour, slopes, thickness
-    case CasavStorage::float32:
-      break;
-  }
-  return 0;
+  constexpr std::uint64_t kColor = 3, kSlopesAndThickness = 3;
+  return storage == CasavStorage::slides ? kColor : kColor + kSlopesAndThickness;
 }
 
 }  // namespace beampipe

@@ -96,18 +96,9 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const CasavMerging& merging, StageCounters& counters, const PixelObservers* observers) {
   MergeWork work;
-  const auto composed = [&] {
-    switch (merging.storage) {
-      case CasavStorage::slides:
-        return compose_stored<SlidesAggregate>(fragments, buffer, merging, work, observers);
-      case CasavStorage::text:
-        return compose_stored<TextAggregate>(fragments, buffer, merging, work, observers);
-      case CasavStorage::float32:
-        break;
-    }
-    return compose_stored<Aggregate>(fragments, buffer, merging, work, observers);
-  };
-  std::vector<Aggregate> aggregates = composed();
+  std::vector<Aggregate> aggregates = merging.storage == CasavStorage::slides
+                                          ? compose_stored<SlidesAggregate>(fragments, buffer, merging, work, observers)
+                                          : compose_stored<TextAggregate>(fragments, buffer, merging, work, observers);
   const std::uint32_t bytes = casav_aggregate_bytes(merging.storage);
   charge_merges(buffer, casav_merges_cost(work, merging.rules, merging.storage), bytes, bytes, counters);
   counters.position_tests += position_tests(work);

@@ -30,15 +30,8 @@ AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, const C
     : layers_(layers), merging_(merging), observers_(observers), aggregates_(pixels * layers, kEmptyAggregate) {}
 
 Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
-  switch (merging_.storage) {
-    case CasavStorage::slides:
-      return SlidesAggregate(aggregate);
-    case CasavStorage::text:
-      return TextAggregate(aggregate);
-    case CasavStorage::float32:
-      break;
-  }
-  return aggregate;
+  if (merging_.storage == CasavStorage::text) return TextAggregate(aggregate);
+  return SlidesAggregate(aggregate);
 }
 
 void AggregateLayers::add(const std::vector<Fragment>& fragments, StageCounters& counters, std::vector<float>& merges) {

@@ -15,9 +15,8 @@
 namespace beampipe {
 
 enum class CasavStorage {
-  slides,   // 42 bytes: slide 23 of the talk
-  text,     // 32 bytes with colour: the size that section 3 states, in a layout of our own
-  float32,  // every number as float32: shows what packing costs
+  slides,  // 42 bytes: slide 23 of the talk
+  text,    // 32 bytes with colour: the size that section 3 states, in a layout of our own
 };
 
 #pragma pack(push, 2)
@@ -86,22 +85,14 @@ static_assert(sizeof(TextAggregate) == 32);
 #pragma pack(pop)
 
 constexpr std::uint32_t casav_aggregate_bytes(CasavStorage storage) {
-  switch (storage) {
-    case CasavStorage::slides:
-      return sizeof(SlidesAggregate);
-    case CasavStorage::text:
-      return sizeof(TextAggregate);
-    case CasavStorage::float32:
-      break;
-  }
-  return sizeof(Aggregate);
+  return storage == CasavStorage::slides ? sizeof(SlidesAggregate) : sizeof(TextAggregate);
 }
 
 // How `compose` and compose_layers merge: by which rules, where the bits of masks lie, and how aggregates are stored.
 struct CasavMerging {
   const MergePositions& positions;
   MergeRules rules = {};
-  CasavStorage storage = CasavStorage::float32;
+  CasavStorage storage = CasavStorage::slides;
 };
 
 }  // namespace beampipe

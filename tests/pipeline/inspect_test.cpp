@@ -24,7 +24,6 @@ constexpr InspectedSpec kSpecs[] = {
     {"beam:order=stream", 0.03, 1e-4},
     {"beam:order=sorted", 2e-3, 1e-4},
     {"casav", 4e-3, 1e-4},
-    {"casav:mask=exact,storage=float32", 1e-5, 1e-4},
     {"casav:order=near-first", 4e-3, 1e-4},
     {"casav:order=stream,layers=8", 4e-3, 1e-4},
     {"alpha", 4e-3, 2e-3},
