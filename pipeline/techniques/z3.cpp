@@ -7,27 +7,26 @@
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
 #include "pipeline/units/z3_unit.h"
-#include "stages/beam/compose_z3.h"
+#include "stages/data/mask_words.h"
 
 namespace beampipe {
 namespace {
 
 struct Z3Options {
-  int positions = 32;  // together with `layers` one of BEAMPIPE_Z3_PIXELS
-  int layers = 3;
-  bool operator==(const Z3Options&) const = default;
+  int positions = 32;
 };
 
 Framebuffer z3_framebuffer(const Z3Options& z3) {
-  const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
+  const auto words = static_cast<std::uint32_t>(z3.positions / 32);
+  constexpr std::uint32_t layers = kZ3Layers;
   return {.surfaces = {{"owner_map", times("R32UI", 2 * words), 8 * words},
                        {"depth", times("R32F", layers), 4 * layers},
                        {"slopes", times("RG16BF", layers), 4 * layers},
                        {"color", times("RGB16F", layers), 6 * layers}}};
 }
 
-template <std::size_t Words, std::size_t Layers>
-FrameResult render_shape(const FrameJob& job, const Z3Options& z3) {
+template <std::size_t Words>
+FrameResult render_words(const FrameJob& job, const Z3Options& z3) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
@@ -40,7 +39,7 @@ FrameResult render_shape(const FrameJob& job, const Z3Options& z3) {
                                   kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeZ3Unit<Words, Layers> compose(bin, positions, plan.framebuffer.surfaces);
+    ComposeZ3Unit<Words> compose(bin, positions, plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
     for_each_batch(bin.list, [&](const TriangleList& batch) {
@@ -54,8 +53,7 @@ FrameResult render_shape(const FrameJob& job, const Z3Options& z3) {
 }
 
 FrameResult render_z3(const FrameJob& job, const Z3Options& z3) {
-  return with_z3_shape(z3.positions, z3.layers,
-                       [&]<std::size_t Words, std::size_t Layers>() { return render_shape<Words, Layers>(job, z3); });
+  return with_words<1, 4>(z3.positions, [&]<std::size_t Words>() { return render_words<Words>(job, z3); });
 }
 
 }  // namespace
@@ -70,7 +68,7 @@ TechniqueKind z3_kind() {
           .make = make_from(
               Z3Options{},
               [](Z3Options& o) -> SpecOptions {
-                return {choice("shape", o, {{"32x3", {32, 3}}, {"128x3", {128, 3}}}, "positions of the mask x layers")};
+                return {choice("shape", o.positions, {{"32x3", 32}, {"128x3", 128}}, "positions of the mask x layers")};
               },
               [](const Z3Options& o) {
                 return Technique{.framebuffer = z3_framebuffer(o),

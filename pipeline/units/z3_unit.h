@@ -10,7 +10,7 @@
 
 namespace beampipe {
 
-template <std::size_t Words, std::size_t Layers>
+template <std::size_t Words>
 class ComposeZ3Unit {
  public:
   ComposeZ3Unit(Bin& bin, const PositionSet& positions, const std::vector<Surface>& framebuffer)
@@ -40,7 +40,7 @@ class ComposeZ3Unit {
   BinStage stage_;
   const PositionSet& positions_;
   std::vector<float>& merges_;
-  std::vector<Z3Pixel<Words, Layers>> pixels_;
+  std::vector<Z3Pixel<Words>> pixels_;
   AggregateMemory memory_;
 };
 

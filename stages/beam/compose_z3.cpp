@@ -35,18 +35,18 @@ Layer merged(const Layer& a, const Layer& b) {
           a.positions | b.positions};
 }
 
-template <std::size_t Words, std::size_t Layers>
+template <std::size_t Words>
 class PixelLayers {
  public:
   explicit PixelLayers(const PositionSet& positions) : offsets_(positions.offsets) {}
 
   // `observer` may be null.
-  void add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel, PixelObserver* observer) {
-    std::array<Layer, Layers + 1> layers;
+  void add(const Fragment& fragment, Z3Pixel<Words>& pixel, PixelObserver* observer) {
+    std::array<Layer, kZ3Layers + 1> layers;
     std::size_t used = 0;
     auto owners = pixel.owners;  // a copy, because the words of a packed pixel may not be aligned
     Layer arriving{packed(fragment.plane, fragment.color / fragment.alpha), fragment.mask};
-    for (std::uint32_t k = 0; k < Layers; ++k) {
+    for (std::uint32_t k = 0; k < kZ3Layers; ++k) {
       Layer layer{pixel.layers[k], owners.positions_in(k + 1)};
       const WideMask contested = layer.positions & fragment.mask;
       if (!contested.none()) {
@@ -62,7 +62,7 @@ class PixelLayers {
     if (arriving.positions.none()) return;
     ++work.taken;
     layers[used++] = arriving;
-    if (used > Layers) merge_two(layers, observer), --used;
+    if (used > kZ3Layers) merge_two(layers, observer), --used;
     for (std::uint32_t k = 0; k < used; ++k) {
       pixel.layers[k] = layers[k].surface;
       owners.put(layers[k].positions, k + 1);
@@ -73,7 +73,7 @@ class PixelLayers {
   Z3Work work;
 
  private:
-  void merge_two(std::array<Layer, Layers + 1>& layers, PixelObserver* observer) {
+  void merge_two(std::array<Layer, kZ3Layers + 1>& layers, PixelObserver* observer) {
     ++work.merges;
     std::size_t first = 0, second = 1;
     float least = std::numeric_limits<float>::infinity();
@@ -97,29 +97,28 @@ class PixelLayers {
 
 }  // namespace
 
-template <std::size_t Words, std::size_t Layers>
+template <std::size_t Words>
 void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges,
-                const PixelObservers* observers) {
-  PixelLayers<Words, Layers> layers(positions);
+                std::vector<Z3Pixel<Words>>& pixels, std::vector<float>& merges, const PixelObservers* observers) {
+  PixelLayers<Words> layers(positions);
   for (const Fragment& fragment : fragments) {
     const std::uint64_t before = layers.work.merges;
     layers.add(fragment, pixels[fragment.pixel], observer_at(observers, fragment.pixel));
     merges[fragment.pixel] += static_cast<float>(layers.work.merges - before);
   }
   layers.work.fragments = fragments.size();
-  charge<Words, Layers>(layers.work, counters);
+  charge<Words>(layers.work, counters);
 }
 
-template <std::size_t Words, std::size_t Layers>
-std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels, const PixelObservers* observers) {
+template <std::size_t Words>
+std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words>>& pixels, const PixelObservers* observers) {
   std::vector<PixelColor> colors;
-  for (const Z3Pixel<Words, Layers>& pixel : pixels) {
+  for (const Z3Pixel<Words>& pixel : pixels) {
     PixelColor sum{0, glm::vec3(0.0f)};
     const auto owners = pixel.owners;
     PixelObserver* const observer = observer_at(observers, colors.size());
     if (observer) observer->arrivals_end();
-    for (std::uint32_t k = 0; k < Layers; ++k) {
+    for (std::uint32_t k = 0; k < kZ3Layers; ++k) {
       const Layer layer{pixel.layers[k], owners.positions_in(k + 1)};
       const float share = layer.count() / (32 * Words);
       sum.alpha += share;
@@ -132,11 +131,12 @@ std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pix
   return colors;
 }
 
-#define BEAMPIPE_Z3(words, layers)                                                                            \
-  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                  \
-                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&, const PixelObservers*); \
-  template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&, const PixelObservers*);
-BEAMPIPE_Z3_PIXELS(BEAMPIPE_Z3)
+#define BEAMPIPE_Z3(words)                                                                            \
+  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&,          \
+                           std::vector<Z3Pixel<words>>&, std::vector<float>&, const PixelObservers*); \
+  template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words>>&, const PixelObservers*);
+BEAMPIPE_Z3(1)
+BEAMPIPE_Z3(4)
 #undef BEAMPIPE_Z3
 
 }  // namespace beampipe

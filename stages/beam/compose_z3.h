@@ -19,13 +19,12 @@ namespace beampipe {
 // `pixels`: one per pixel of the tile, kept from batch to batch; zero at first. Adds to `merges`, one per pixel of the
 // tile as well, the number of times that two layers were merged. Counts as items out the fragments that take a
 // position.
-template <std::size_t Words, std::size_t Layers>
+template <std::size_t Words>
 void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges,
+                std::vector<Z3Pixel<Words>>& pixels, std::vector<float>& merges,
                 const PixelObservers* observers = nullptr);
 
-template <std::size_t Words, std::size_t Layers>
-std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels,
-                                  const PixelObservers* observers = nullptr);
+template <std::size_t Words>
+std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words>>& pixels, const PixelObservers* observers = nullptr);
 
 }  // namespace beampipe

@@ -25,11 +25,10 @@ inline OperationCounts arrival_cost() { return {.convert = 2 * 2 + 3}; }
 // Per word of a fragment's mask, for each layer: to find the layer's positions and the contested ones among them (1
 // operation), to take from the fragment the contested positions where it is not nearer (4), and from the layer those
 // where it is (3). Nothing branches.
-template <std::size_t Layers, std::size_t Bits>
-OperationCounts z3_contest_cost() {
+inline OperationCounts z3_contest_cost() {
   OperationCounts counts;
-  for (std::uint32_t k = 0; k < Layers; ++k) counts += find_cost<Bits>(k + 1);
-  counts.bit += Layers * (1 + 4 + 3);
+  for (std::uint32_t k = 0; k < kZ3Layers; ++k) counts += find_cost<kZ3Planes>(k + 1);
+  counts.bit += kZ3Layers * (1 + 4 + 3);
   return counts;
 }
 
@@ -51,21 +50,20 @@ inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words) {
   return cost;
 }
 
-template <std::size_t Words, std::size_t Layers>
+template <std::size_t Words>
 void charge(const Z3Work& work, StageCounters& counters) {
-  constexpr std::size_t kBits = std::bit_width(Layers);
   constexpr std::uint64_t kFragmentBytes = 4 + 4 * Words + 12 + 6;  // pixel, mask, depth plane, colour
   counters.items_in += work.fragments;
   counters.items_out += work.taken;
   counters.ops += arrival_cost() * work.fragments;
-  counters.ops += layer_format_cost() * ((work.fragments + work.taken) * Layers);
-  counters.ops += z3_contest_cost<Layers, kBits>() * (Words * work.fragments);
+  counters.ops += layer_format_cost() * ((work.fragments + work.taken) * kZ3Layers);
+  counters.ops += z3_contest_cost() * (Words * work.fragments);
   counters.ops += nearer_cost() * (32 * Words * work.planes_compared);
-  counters.ops += layer_merge_cost(Layers + 1, Words) * work.merges;
-  for (std::uint32_t k = 0; k < Layers; ++k) counters.ops += put_cost<kBits>(k + 1) * (Words * work.taken);
+  counters.ops += layer_merge_cost(kZ3Layers + 1, Words) * work.merges;
+  for (std::uint32_t k = 0; k < kZ3Layers; ++k) counters.ops += put_cost<kZ3Planes>(k + 1) * (Words * work.taken);
   counters.position_tests += 32 * Words * work.planes_compared;
-  counters.bytes_read += work.fragments * (kFragmentBytes + sizeof(Z3Pixel<Words, Layers>));
-  counters.bytes_written += work.taken * sizeof(Z3Pixel<Words, Layers>);
+  counters.bytes_read += work.fragments * (kFragmentBytes + sizeof(Z3Pixel<Words>));
+  counters.bytes_written += work.taken * sizeof(Z3Pixel<Words>);
   counters.lanes_used += work.taken;
   counters.lanes_issued += work.fragments;
 }

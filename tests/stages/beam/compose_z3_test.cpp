@@ -4,15 +4,15 @@
 
 namespace beampipe::compose_z3_test {
 
-template <std::size_t Words, std::size_t Layers>
-std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                             const Tile& tile) {
+template <std::size_t Words>
+std::vector<Z3Pixel<Words>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
+                                     const Tile& tile) {
   const PositionSet positions(cell_patterns(32 * Words));
   StageCounters counters;
   std::vector<Fragment> fragments =
       fragments_of(triangles, tile, {.mask = MaskSource::exact, .positions = positions.patterns, .fragment_bytes = 26});
   shade(colors, fragments, counters);
-  std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
+  std::vector<Z3Pixel<Words>> pixels(tile.pixels());
   std::vector<float> merges(tile.pixels());
   compose_z3(fragments, positions, counters, pixels, merges);
   return pixels;
@@ -25,7 +25,7 @@ TEST(ComposeZ3, LayersThatFitAreWeightedByTheirPositions) {
   add_everywhere(triangles, -0.5f);
   add_left_of(triangles, 64, -0.75f);
   add_right_of(triangles, 192, -0.6f);
-  const PixelColor found = z3_colors(composed<4, 3>(triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kPixel)).at(0);
+  const PixelColor found = z3_colors(composed<4>(triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kPixel)).at(0);
   EXPECT_EQ(found.alpha, 1.0f);
   EXPECT_EQ(found.color, glm::vec3(0.5f, 0.25f, 0.25f));
 }
@@ -38,8 +38,7 @@ TEST(ComposeZ3, OrderDoesNotMatterWhileLayersFit) {
     if (!front_first) add_left_of(triangles, 128, -0.75f);
     std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}};
     if (!front_first) std::swap(colors[0], colors[1]);
-    EXPECT_EQ(z3_colors(composed<1, 3>(triangles, colors, kPixel)).at(0).color, glm::vec3(0.5f, 0.5f, 0))
-        << front_first;
+    EXPECT_EQ(z3_colors(composed<1>(triangles, colors, kPixel)).at(0).color, glm::vec3(0.5f, 0.5f, 0)) << front_first;
   }
 }
 
@@ -51,7 +50,7 @@ TEST(ComposeZ3, TheClosestTwoAreMerged) {
   add_left_of(triangles, 64, -0.9f);
   add_left_of(triangles, 32, -0.95f);
   const std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
-  const auto pixels = composed<1, 3>(triangles, colors, kPixel);
+  const auto pixels = composed<1>(triangles, colors, kPixel);
   const PixelColor before = z3_colors(pixels).at(0);
   EXPECT_NEAR(before.color.r, 0.25, 1e-3);
   EXPECT_NEAR(before.color.g, 0.5, 1e-3);
@@ -63,7 +62,7 @@ TEST(ComposeZ3, WeightsNeverPassOne) {
   Random random(91);
   const SetupTriangles triangles = random_triangles(random, 80);
   const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1.0f));
-  for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}))) {
+  for (const PixelColor& pixel : z3_colors(composed<1>(triangles, white, {0, 0, 12, 12}))) {
     EXPECT_GE(pixel.alpha, 0.0f);
     EXPECT_LE(pixel.alpha, 1.0f);
     EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16

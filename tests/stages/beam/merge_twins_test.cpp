@@ -150,10 +150,10 @@ struct CountedLayer {
   }
 };
 
-template <std::size_t Words, std::size_t Layers>
+template <std::size_t Words>
 class Z3Twin {
  public:
-  using Pixel = Z3Pixel<Words, Layers>;
+  using Pixel = Z3Pixel<Words>;
 
   Z3Twin(const PositionSet& positions, OperationCounts& counts) : positions_(positions), counts_(counts) {}
 
@@ -161,7 +161,7 @@ class Z3Twin {
   bool add(const Fragment& fragment, Pixel& pixel) {
     CountedLayer arriving = arriving_layer(fragment);
     std::vector<CountedLayer> layers;
-    for (std::uint32_t k = 0; k < Layers; ++k) {
+    for (std::uint32_t k = 0; k < kZ3Layers; ++k) {
       CountedLayer layer = loaded(pixel, k);
       std::vector<Bits> contested;
       for (std::size_t w = 0; w < Words; ++w) contested.push_back(layer.mask[w] & bits(fragment.mask.words[w]));
@@ -174,9 +174,9 @@ class Z3Twin {
     }
     if (arriving.empty()) return false;
     layers.push_back(arriving);
-    const bool one_too_many = layers.size() > Layers;
+    const bool one_too_many = layers.size() > kZ3Layers;
     if (one_too_many) merge_two(layers);
-    for (std::uint32_t k = 0; k < Layers; ++k) store(k < layers.size() ? &layers[k] : nullptr, k, pixel);
+    for (std::uint32_t k = 0; k < kZ3Layers; ++k) store(k < layers.size() ? &layers[k] : nullptr, k, pixel);
     return one_too_many;
   }
 
@@ -198,7 +198,7 @@ class Z3Twin {
     CountedLayer layer{real(stored.z), converted(real(stored.slopes[0])), converted(real(stored.slopes[1])), {}, {}};
     for (int c = 0; c < 3; ++c) layer.color[c] = converted(real(stored.color[c]));
     for (std::size_t w = 0; w < Words; ++w) {
-      std::array<Bits, std::bit_width(Layers)> planes;
+      std::array<Bits, kZ3Planes> planes;
       for (std::size_t b = 0; b < planes.size(); ++b) planes[b] = bits(pixel.owners.planes[b][w]);
       layer.mask.push_back(word_in_state(planes, k + 1));
     }
@@ -208,7 +208,7 @@ class Z3Twin {
   void store(const CountedLayer* layer, std::uint32_t k, Pixel& pixel) {
     for (int number = 0; number < 2 + 3; ++number) converted(real(0));
     for (std::size_t w = 0; w < Words; ++w)
-      for (std::size_t b = 0; b < std::bit_width(Layers); ++b)
+      for (std::size_t b = 0; b < kZ3Planes; ++b)
         pixel.owners.planes[b][w] =
             word_put(bits(pixel.owners.planes[b][w]), layer ? layer->mask[w] : bits(0), (k + 1) >> b & 1).value;
     if (!layer) return;
@@ -262,16 +262,16 @@ class Z3Twin {
 };
 
 TEST_P(MergeTwins, ComposeZ3) {
-  const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>) {
+  const auto compare = [&]<std::size_t Words>(Z3Pixel<Words>) {
     const PositionGrid grid(32 * Words);
     const PositionSet positions(cell_patterns(32 * Words));
     make_fragments(grid_options(grid, 0));
-    std::vector<Z3Pixel<Words, Layers>> pixels(tile_.pixels()), twins = pixels;
+    std::vector<Z3Pixel<Words>> pixels(tile_.pixels()), twins = pixels;
     std::vector<float> merges(tile_.pixels()), twin_merges = merges;
     StageCounters counters;
     compose_z3(fragments_, positions, counters, pixels, merges);
     twin_ = {};
-    Z3Twin<Words, Layers> twin(positions, twin_);
+    Z3Twin<Words> twin(positions, twin_);
     for (const Fragment& fragment : fragments_)
       twin_merges[fragment.pixel] += twin.add(fragment, twins[fragment.pixel]) ? 1.0f : 0.0f;
     EXPECT_EQ(counters.ops, twin_);
@@ -280,11 +280,12 @@ TEST_P(MergeTwins, ComposeZ3) {
     for (std::size_t i = 0; i < found.size(); ++i) {
       ASSERT_EQ(found[i].alpha, expected[i].alpha) << i;
       ASSERT_EQ(found[i].color, expected[i].color) << i;
-      for (std::size_t k = 0; k < Layers; ++k) ASSERT_EQ(+pixels[i].layers[k].z, +twins[i].layers[k].z) << i;  // packed
+      for (std::size_t k = 0; k < kZ3Layers; ++k)
+        ASSERT_EQ(+pixels[i].layers[k].z, +twins[i].layers[k].z) << i;  // packed
     }
   };
-  compare(Z3Pixel<1, 3>());
-  compare(Z3Pixel<4, 3>());
+  compare(Z3Pixel<1>());
+  compare(Z3Pixel<4>());
 }
 
 BEAMPIPE_ON_EVERY_SCENE(MergeTwins);
