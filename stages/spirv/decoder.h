@@ -136,7 +136,7 @@ class Decoder {
   bool decode_linear_algebra(const Instruction& instruction);
   bool decode_conversion(const Instruction& instruction);
   void decode_glsl(const Instruction& instruction);
-  Parts glsl_of_vectors(const Instruction& instruction);
+  class GlslFormulas;
   Row dot(std::uint32_t width, const Parts& a, const Parts& b);
 
   // decode_images.cpp.
