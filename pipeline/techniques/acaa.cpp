@@ -76,7 +76,6 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
       });
       if (&sampling == &rounds.back()) accumulate.blend_translucent(depth_test, central);
       accumulate.finish_round();
-      depth_test.count_bytes();
     }
     bin.finish(accumulate.resolve_accumulator());
   });

@@ -52,7 +52,6 @@ std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
   });
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
   put_over(draw_translucent(bin, depth_test, ShadeAt::sample), bin.observers(), picture);
-  depth_test.count_bytes();
   return picture;
 }
 

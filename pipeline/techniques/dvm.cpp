@@ -161,7 +161,6 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
       copy_to_frame(draw_translucent(bin, visibility, ShadeAt::centroid), bin.tile, frame, translucent);
       bin.stage(StageId::blend).streams(bin.tile.pixels() * kLayerBytes);
     }
-    visibility.count_bytes();
     if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
   });
   run_on_tiles(context, StageId::dilate, result, [&](const Tile& tile, const BinStage& stage) {

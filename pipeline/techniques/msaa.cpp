@@ -147,7 +147,6 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
     shade(fragments);
     if (!options.prepass) depth_test.test(fragments);
   });
-  depth_test.count_bytes();
   if (!bin.resolves()) {
     StageCounters nothing_is_moved;
     return depth_test.resolve_samples(options.at, nothing_is_moved, options.space);

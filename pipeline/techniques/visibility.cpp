@@ -56,7 +56,6 @@ std::vector<glm::vec4> shade_visibility(Bin& bin, const Materials& materials, De
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(visibility);
   const ShadeAt at = visibility.sampling().pattern.count == 1 ? ShadeAt::sample : ShadeAt::centroid;
   put_over(draw_translucent(bin, visibility, at), bin.observers(), picture);
-  visibility.count_bytes();
   return picture;
 }
 

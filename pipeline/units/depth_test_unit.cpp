@@ -15,7 +15,8 @@ DepthTestUnit::DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t f
       sampling_(sampling),
       surface_(bin.tile, sampling, first_color_bytes),
       memory_(bin.memory(), bin.tile, sampling, color_bytes, std::move(same_color)),
-      fragments_(bin.pixel_counter("fragments")) {
+      fragments_(bin.pixel_counter("fragments")),
+      bytes_(bin.models_memory() ? &bin.pixel_counter("bytes") : nullptr) {
   if (!bin.observer()) return;
   surface_.observers = bin.observers();
   surface_.first_observed = bin.observer()->first_sample(sampling);
@@ -108,10 +109,6 @@ std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, StageCounters&
   return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving,
                  {static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
                   [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); }, space});
-}
-
-void DepthTestUnit::count_bytes() {
-  if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
 }
 
 void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,

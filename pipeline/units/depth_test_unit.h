@@ -27,6 +27,13 @@ class DepthTestUnit {
       : DepthTestUnit(bin, sampling, first == FirstPass::writes_color ? color_bytes : 0, color_bytes,
                       std::move(same_color)) {}
 
+  // Adds the bytes that tests and writes have moved to the bin's counter.
+  ~DepthTestUnit() {
+    if (bytes_) memory_.add_bytes(*bytes_);
+  }
+  DepthTestUnit(const DepthTestUnit&) = delete;
+  DepthTestUnit& operator=(const DepthTestUnit&) = delete;
+
   // Translucent fragments are blended from here on, shaded there.
   void shade_translucent_at(ShadeAt at);
 
@@ -69,9 +76,6 @@ class DepthTestUnit {
   std::vector<glm::vec4> resolve_samples(ShadeAt at, StageCounters& resolving,
                                          ResolveSpace space = ResolveSpace::linear) const;
 
-  // Adds the bytes that tests and writes have moved to the bin's counter. Once, at the end.
-  void count_bytes();
-
   const SampleTile& surface() const { return surface_; }
   const Sampling& sampling() const { return sampling_; }
 
@@ -94,6 +98,7 @@ class DepthTestUnit {
   SampleTile surface_;
   SampleMemory memory_;
   std::vector<float>& fragments_;  // per pixel
+  std::vector<float>* bytes_;      // per pixel; null: memory is not modelled
   std::vector<SampleAccess> accesses_;
 };
 
