@@ -28,6 +28,7 @@ struct TechniqueKind {
   std::vector<std::string> examples;
   int texture_taps = 0;                    // ShadingRules::texture_taps, unless the spec says otherwise
   std::vector<std::string> stressed = {};  // specs that `beampipe stress` compares with exact arithmetic
+  std::vector<std::string> counters = {};  // of its pixels, besides `fragments` and `bytes` (counter_registry.h)
   // Identifies code outside the program that makes the pictures, so that results of other code are not taken for its
   // own; empty: there is none.
   std::string code = {};

@@ -91,6 +91,7 @@ TechniqueKind acaa_kind() {
       .source = "Enderton et al. 2015",
       .examples = {"acaa:8", "acaa:64,double=stencil,color=unorm8", "acaa:4,double=saturate", "acaa:8,coverage=shader"},
       .stressed = {"acaa:8", "acaa:8,double=stencil", "acaa:8,color=unorm8", "acaa:8,color=fp32", "acaa:256"},
+      .counters = {"visible_fragments"},
       .make = make_from(
           AcaaOptions{},
           [](AcaaOptions& o) -> SpecOptions {

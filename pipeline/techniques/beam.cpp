@@ -91,6 +91,7 @@ TechniqueKind beam_kind() {
                    "beam:at=covered,alpha=256,filter=sampler"},
       .texture_taps = 16,
       .stressed = {"beam", "beam:bits=128,pool=16"},
+      .counters = {"memory_chunks", "merges", "collections", "pool_bytes", "record_bytes", "shadings"},
       .make = make_from(
           BeamOptions{},
           [](BeamOptions& o) -> SpecOptions {

@@ -125,6 +125,7 @@ TechniqueKind beam_sorted_kind() {
           .examples = {"beam:order=sorted", "beam:order=sorted,window=one"},
           .texture_taps = 16,
           .stressed = {"beam:order=sorted", "beam:order=sorted,bits=32", "beam:order=sorted,window=one"},
+          .counters = {"merges", "tiny_triangles", "largest_window"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {

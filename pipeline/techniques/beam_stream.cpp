@@ -85,6 +85,7 @@ TechniqueKind beam_stream_kind() {
           .examples = {"beam:order=stream", "beam:order=stream,bits=256"},
           .texture_taps = 16,
           .stressed = {"beam:order=stream", "beam:order=stream,bits=256"},
+          .counters = {"memory_chunks", "merges", "record_bytes", "refusals", "lost_specks", "shadings"},
           .make = make_from(
               StreamOptions{},
               [](StreamOptions& o) -> SpecOptions {

@@ -289,6 +289,7 @@ TechniqueKind casav_kind() {
                        "casav:thickness=none", "casav:mask=exact,depths=positions,overlap=unbounded",
                        "casav:order=near-first", "casav:order=stream,layers=8"},
           .stressed = {"casav", "casav:reading=literal", "casav:storage=text"},
+          .counters = {"merges", "tiny_triangles"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }
 
@@ -298,6 +299,7 @@ TechniqueKind alpha_kind() {
           .source = "Porter and Duff 1984",
           .examples = {"alpha"},
           .stressed = {"alpha"},
+          .counters = {"merges", "tiny_triangles"},
           .make = make_plain([] { return make_casav(CasavOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
 }
 

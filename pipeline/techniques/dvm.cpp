@@ -195,6 +195,8 @@ TechniqueKind dvm_kind() {
           .source = "Hable 2021",
           .examples = {"dvm", "dvm:material=draw", "dvm:clamp=camera", "dvm:clamp=variance", "dvm:extra=4"},
           .stressed = {"dvm"},
+          .counters = {"quads_of_1", "quads_of_2", "quads_of_3", "quads_of_4", "quads_of_5_or_more", "partial_quads",
+                       "unknown"},
           .make = make_from(
               DvmOptions{},
               [](DvmOptions& o) -> SpecOptions {

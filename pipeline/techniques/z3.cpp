@@ -65,6 +65,7 @@ TechniqueKind z3_kind() {
           .source = "Jouppi and Chang 1999",
           .examples = {"z3", "z3:shape=128x3"},
           .stressed = {"z3", "z3:shape=128x3"},
+          .counters = {"merges"},
           .make = make_from(
               Z3Options{},
               [](Z3Options& o) -> SpecOptions {

@@ -6,12 +6,13 @@
 
 namespace beampipe {
 
-// A counter of a pixel: a channel of frame_NNNN_counters.exr.
+// A counter of a pixel: a channel of frame_NNNN_counters.exr. Techniques say themselves which ones they have
+// (TechniqueKind::counters).
 struct PixelCounterInfo {
   const char* name;
   const char* unit;
   const char* meaning;
-  const char* techniques;
+  const char* where = "";  // what else it takes: options of a technique, or of a command
 };
 
 const std::vector<PixelCounterInfo>& pixel_counters();

@@ -85,13 +85,21 @@ Trace full_trace() { return parts_of_pixels(2, 20, 5); }
 
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
-  for (const Trace& trace : {test_trace(), lit_trace(), full_trace()})
-    for (const std::string& spec : example_specs()) {
-      History history;
-      for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
-        for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters)
-          for (const float value : values) found[name] += value;
-    }
+  const std::vector<Trace> traces = {test_trace(), lit_trace(), full_trace()};
+  for (const TechniqueKind& kind : technique_kinds()) {
+    std::set<std::string> of_kind;
+    for (const Trace& trace : traces)
+      for (const std::string& spec : kind.examples) {
+        History history;
+        for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
+          for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters) {
+            of_kind.insert(name);
+            for (const float value : values) found[name] += value;
+          }
+      }
+    of_kind.erase("fragments"), of_kind.erase("bytes");
+    EXPECT_EQ(of_kind, std::set<std::string>(kind.counters.begin(), kind.counters.end())) << title_of(kind);
+  }
   for (const PixelCounterInfo& counter : pixel_counters()) {
     EXPECT_GT(found[counter.name], 0.0f) << counter.name;
     found.erase(counter.name);

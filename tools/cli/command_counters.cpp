@@ -1,8 +1,10 @@
 // beampipe counters: what is counted, of a stage, of a pixel and of a frame.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
+#include "pipeline/technique_table.h"
 #include "stages/cost/counter_registry.h"
 #include "stages/cost/counters.h"
 #include "tools/cli/commands.h"
@@ -38,6 +40,16 @@ std::string text_of(const StageInfo& stage) {
          align_columns(rows, {0, 1}) + "\n";
 }
 
+// "beam, casav", "msaa:N with motion", "compare".
+std::string place_of(const PixelCounterInfo& counter) {
+  std::string titles;
+  for (const TechniqueKind& kind : technique_kinds())
+    if (std::count(kind.counters.begin(), kind.counters.end(), counter.name) > 0)
+      titles += (titles.empty() ? "" : ", ") + title_of(kind);
+  const std::string where = counter.where;
+  return titles.empty() ? where : where.empty() ? titles : titles + " with " + where;
+}
+
 std::string all_text() {
   std::string text;
   for (const StageInfo& stage : stage_list()) text += text_of(stage);
@@ -48,7 +60,7 @@ std::string all_text() {
   rows.clear();
   for (const auto* counters : {&pixel_counters(), &error_counters()})
     for (const PixelCounterInfo& counter : *counters)
-      rows.push_back({counter.name, counter.unit, std::string(counter.meaning) + " (" + counter.techniques + ")"});
+      rows.push_back({counter.name, counter.unit, std::string(counter.meaning) + " (" + place_of(counter) + ")"});
   text += "\nCounters of pixels\n" + align_columns(rows, {0, 1, 2});
   rows.clear();
   for (const FrameCounterInfo& counter : frame_counters())
