@@ -180,7 +180,7 @@ TechniqueKind msaa_kind() {
       .source = "Direct3D, Vulkan",
       .examples = {"msaa:1", "msaa:8", "msaa:64", "msaa:8,prepass", "msaa:4,motion,resolve=reinhard",
                    "msaa:4,at=centroid,alpha=coverage", "msaa:4,alpha=sample", "msaa:8,alpha=hashed,blend=sorted"},
-      .stressed = {"msaa:1", "msaa:8", "msaa:16", "msaa:256"},
+      .stressed = {"msaa:1", "msaa:8", "msaa:8,prepass", "msaa:16", "msaa:256"},
       .counters = {"centroids", "motion"},
       .make = make_from(
           MsaaOptions{},

@@ -1,47 +1,34 @@
 // The history of a pixel is the pixel: its weights times its colours are the bits of the picture, but for what formats
 // change.
 
-#include "pipeline/technique.h"
+#include <algorithm>
+
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/test.h"
 #include "traces/scenes.h"
 
 namespace beampipe::inspect_test {
 
-struct InspectedSpec {
-  const char* spec;
+struct Tolerance {
   double most_rest;     // of a channel: what formats and limits may change; colours are about 1
   double weight_error;  // of the sum of all weights
 };
 
-// fp16 has 11 bits, and alpha rounds to it after each fragment. Owners that become one keep 9 bits of their colour, and
-// z3 rounds it at each merge. The limits of beam move a channel by up to 3 positions. The samples of msaa are added up
-// in double precision, so opaque triangles leave no rest. Layers over the picture are added in single precision.
-constexpr InspectedSpec kSpecs[] = {
-    {"beam", 3.0 / 256, 1e-4},
-    {"beam:bits=128,pool=30,at=visible", 3.0 / 128, 1e-4},
-    {"beam:bits=32,pool=16,bin=8,at=quarters", 0.1, 1e-4},
-    {"beam:order=stream", 0.03, 1e-4},
-    {"beam:order=sorted", 2e-3, 1e-4},
-    {"casav", 4e-3, 1e-4},
-    {"casav:order=near-first", 4e-3, 1e-4},
-    {"casav:order=stream,layers=8", 4e-3, 1e-4},
-    {"alpha", 4e-3, 2e-3},
-    {"z3", 4e-3, 1e-6},
-    {"z3:shape=128x3", 4e-3, 1e-6},
-    {"msaa:1", 0, 1e-12},
-    {"msaa:8", 0, 1e-12},
-    {"msaa:64,at=centroid", 0, 1e-12},
-    {"msaa:8,prepass", 0, 1e-12},
-    {"msaa:4,alpha=coverage", 0, 1e-12},
-    {"msaa:8,resolve=reinhard", 1e-6, 10},
-    {"deferred", 1e-6, 1e-6},
-    {"visibility", 1e-6, 1e-6},
-    {"visibility:8", 1e-6, 1e-6},
-    {"acaa:8", 4e-3, 10},
-    {"acaa:8,double=saturate", 4e-3, 1e-4},
-    {"acaa:64,double=stencil,color=fp32", 1e-5, 1e-4},
-};
+// By what a technique says that it errs by. fp16 has 11 bits, and `alpha` rounds to it after each fragment. Owners that
+// become one keep 9 bits of their colour, and z3 rounds it at each merge. The limits of beam move a channel by up to 3
+// positions. Samples are added up in double precision, so opaque triangles leave no rest. Layers over the picture are
+// added in single precision.
+Tolerance tolerance_of(const Technique& technique) {
+  const auto errs_by = [&](ErrorSource source) { return std::ranges::count(technique.errs_by, source) > 0; };
+  const bool sums_up_samples = !technique.sampled_at.empty() && !errs_by(ErrorSource::merges_of_layers) &&
+                               !errs_by(ErrorSource::sums_in_fp16) && !errs_by(ErrorSource::sums_in_unorm8);
+  if (sums_up_samples) return {0, 1e-6};
+  const double rounding = std::max(4e-3, technique.rounding_error);
+  if (errs_by(ErrorSource::double_counting)) return {rounding, 10};
+  if (errs_by(ErrorSource::sums_in_unorm8)) return {rounding, rounding};
+  return {technique.counted_positions > 0 ? 3.0 / technique.counted_positions : rounding, 1e-4};
+}
 
 float error_at(const Image& image, const Image& reference, std::size_t pixel) {
   float error = 0;
@@ -65,16 +52,16 @@ std::vector<PixelAddress> chosen_pixels(const Image& image, const Image& referen
   return chosen;
 }
 
-void expect_the_picture(const PixelHistory& history, const Image& image, const InspectedSpec& spec) {
+void expect_the_picture(const PixelHistory& history, const Image& image, const Tolerance& tolerance) {
   const float* rgba = image.rgba.data() + 4 * (std::size_t{history.at.y} * image.width + history.at.x);
   for (int c = 0; c < 4; ++c) EXPECT_EQ(history.pixel[c], rgba[c]) << "channel " << c;
   const glm::dvec3 sum = history.sum(), rest = history.rest();
   double weights = 0;
   for (const HistoryTerm& term : history.terms) weights += term.weight;
-  EXPECT_NEAR(weights, 1.0, spec.weight_error);
+  EXPECT_NEAR(weights, 1.0, tolerance.weight_error);
   for (int c = 0; c < 3; ++c) {
     EXPECT_EQ(static_cast<float>(sum[c] + rest[c]), rgba[c]) << "channel " << c;
-    EXPECT_LE(std::abs(rest[c]), spec.most_rest * std::max(1.0, sum[c])) << "channel " << c << " of " << sum[c];
+    EXPECT_LE(std::abs(rest[c]), tolerance.most_rest * std::max(1.0, sum[c])) << "channel " << c << " of " << sum[c];
   }
 }
 
@@ -108,15 +95,18 @@ void expect_consistent(const PixelHistory& history) {
 
 constexpr double kBlending = 2e-7;  // what blending in single precision may leave
 
-// `most_more`: rest beyond that of the spec.
+// `most_more`: rest beyond that of the technique.
 void inspect(const Trace& trace, const std::string& name, unsigned seed, double most_more = 0) {
   const TextureSet textures(trace, name);
   FrameInput run;
   run.memory.modelled = false;
   run.textures = &textures;
   const Image reference = parse_technique("reference").render(trace, 0, run).image;
-  for (const InspectedSpec& spec : kSpecs) {
-    const Technique technique = parse_technique(spec.spec);
+  for (const std::string& spec : example_specs()) {
+    const Technique technique = parse_technique(spec);
+    if (!technique.is_observable) continue;
+    Tolerance tolerance = tolerance_of(technique);
+    tolerance.most_rest += most_more;
     std::vector<PixelWeights> weights;
     const FrameSinks sinks{.weights = technique.has_weights ? &weights : nullptr};
     const Image image = technique.render(trace, 0, run, sinks).image;
@@ -127,10 +117,9 @@ void inspect(const Trace& trace, const std::string& name, unsigned seed, double 
     technique.render(trace, 0, observed, {.histories = &histories});
     ASSERT_EQ(histories.size(), pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      SCOPED_TRACE(name + ", " + spec.spec + ", pixel " + std::to_string(pixels[i].x) + "," +
-                   std::to_string(pixels[i].y));
+      SCOPED_TRACE(name + ", " + spec + ", pixel " + std::to_string(pixels[i].x) + "," + std::to_string(pixels[i].y));
       EXPECT_EQ(histories[i].at, pixels[i]);
-      expect_the_picture(histories[i], image, {spec.spec, spec.most_rest + most_more, spec.weight_error});
+      expect_the_picture(histories[i], image, tolerance);
       expect_consistent(histories[i]);
       if (technique.has_weights)
         expect_the_weights(histories[i], weights[std::size_t{pixels[i].y} * image.width + pixels[i].x]);
