@@ -31,6 +31,24 @@ void add_counter(ObjectForm<StageCounters>& object, const CounterInfo& counter) 
       std::string(keys_of(counter).second),
       [&counter](const StageCounters& stage) { return std::uint64_t{counter.value(stage)}; }, form::count(),
       counter.meaning);
+  StageCounters any;
+  if (counter.stored(any))
+    object.taken(
+        [&counter](const Json& json, StageCounters& stage) { *counter.stored(stage) = json.get<std::uint64_t>(); });
+}
+
+// The stage that a T is about.
+template <class T>
+void add_stage(ObjectForm<T>& object, const std::string& meaning) {
+  object
+      .written(
+          "stage", [](const T& each) { return std::string(name_of(each.stage)); }, form::text(), meaning)
+      .taken([](const Json& json, T& each) {
+        const std::string name = json.get<std::string>();
+        const std::optional<Stage> known = find_stage(name);
+        if (!known) throw std::runtime_error("\"stage\": expected the name of a stage, found \"" + name + '"');
+        each.stage = *known;
+      });
 }
 
 Form<Interval> interval_form() {
@@ -64,17 +82,16 @@ void add_energy(Json& object, const std::string& implementation, const Energy& e
 
 Form<StageCounters> make_stage_form() {
   ObjectForm<StageCounters> stage, operations;
-  stage.written(
-      "stage", [](const StageCounters& each) { return std::string(name_of(each.stage)); }, form::text(),
-      "The stage's name, as `beampipe counters` lists it.");
+  add_stage(stage, "The stage's name, as `beampipe counters` lists it.");
   const std::span<const CounterInfo> counters = stage_counters();
   for (std::size_t i = 0; i < counters.size();) {
     const std::string group(keys_of(counters[i]).first);
     ObjectForm<StageCounters> grouped;
     for (; i < counters.size() && keys_of(counters[i]).first == group; ++i)
       add_counter(group.empty() ? stage : grouped, counters[i]);
-    if (!group.empty())
-      stage.written(group, std::identity(), Form<StageCounters>(grouped), "Operations of the stage, by kind.");
+    if (group.empty()) continue;
+    const Form<StageCounters> form = grouped;
+    stage.written(group, std::identity(), form, "Operations of the stage, by kind.").taken(form.take);
   }
   return stage
       .added("modelled_ms", form::by_name(form::amount()).schema,
@@ -92,24 +109,6 @@ const Form<StageCounters>& stage_form() {
   return form;
 }
 
-// Of a record about a stage.
-Stage stage_named(const Json& json) {
-  const std::string name = json.at("stage").get<std::string>();
-  const std::optional<Stage> known = find_stage(name);
-  if (!known) throw std::runtime_error("\"stage\": expected the name of a stage, found \"" + name + '"');
-  return *known;
-}
-
-StageCounters stage_of(const Json& json) {
-  StageCounters stage{stage_named(json)};
-  for (const CounterInfo& counter : stage_counters()) {
-    const auto [group, key] = keys_of(counter);
-    const Json& object = group.empty() ? json : json.at(group);
-    if (std::uint64_t* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
-  }
-  return stage;
-}
-
 Form<WallTime> wall_form() {
   return ObjectForm<WallTime>()
       .written("median", &WallTime::median, form::amount(), "Of all timed runs.")
@@ -121,26 +120,33 @@ Form<WallTime> wall_form() {
       .written(
           "kept", [](const WallTime& wall) { return wall.kept ? std::optional(true) : std::nullopt; }, form::boolean(),
           "These are times of an earlier run, whose picture was kept.")
+      .taken([](const Json& json, WallTime& wall) { wall.kept = json.get<bool>(); })
       .written("modelling_run", &WallTime::modelling_run, form::amount(),
                "Time of the additional run that modelled them.");
-}
-
-WallTime wall_time_of(const Json& json) {
-  WallTime wall{.median = json.at("median").get<double>(),
-                .min = json.at("min").get<double>(),
-                .max = json.at("max").get<double>(),
-                .runs = json.at("runs").get<int>(),
-                .with_memory_model = json.at("with_memory_model").get<bool>(),
-                .kept = json.value("kept", false)};
-  if (const Json* modelling_run = json.find("modelling_run")) wall.modelling_run = modelling_run->get<double>();
-  return wall;
 }
 
 // A frame of a technique.
 struct FrameOf {
   const FrameReport& frame;
   const TechniqueReport& result;
-  StageCounters all;  // its stages
+  StageCounters all = {};               // its stages
+  FrameReport* read_back_to = nullptr;  // the same frame, while it is read
+};
+
+// A member of the report of the frame.
+template <class Value>
+struct OfReport {
+  Value FrameReport::*place;
+  const Value& operator()(const FrameOf& of) const { return of.frame.*place; }
+  Value& ref(FrameOf& of) const { return of.read_back_to->*place; }
+};
+
+// A text or list, which is left out if it is empty.
+template <class Value>
+struct FilledOfReport {
+  Value FrameReport::*place;
+  std::optional<Value> operator()(const FrameOf& of) const { return form::filled(place)(of.frame); }
+  Value& ref(FrameOf& of) const { return of.read_back_to->*place; }
 };
 
 // All buffers of the frame at their peak: the framebuffer's surfaces, the A-buffer and others.
@@ -159,25 +165,19 @@ Form<Buffer> buffer_form() {
       .written("peak_bytes", &Buffer::peak_bytes, form::count(), "Its largest size.")
       .written(
           "held", [](const Buffer& buffer) { return buffer.per_bin ? kHeldByBin : "frame"; },
-          form::one_of({"frame", kHeldByBin}), "Whether each bin has one, or the frame.");
+          form::one_of({"frame", kHeldByBin}), "Whether each bin has one, or the frame.")
+      .taken([](const Json& json, Buffer& buffer) { buffer.per_bin = json == kHeldByBin; });
 }
 
 Form<ArrayBytes> array_form() {
-  return ObjectForm<ArrayBytes>()
-      .written(
-          "stage", [](const ArrayBytes& each) { return std::string(name_of(each.stage)); }, form::text(),
-          "That moves them.")
-      .written("array", &ArrayBytes::array, form::text(), "Where in memory they lie.")
+  ObjectForm<ArrayBytes> form;
+  add_stage(form, "That moves them.");
+  return form.written("array", &ArrayBytes::array, form::text(), "Where in memory they lie.")
       .written("read", &ArrayBytes::read, form::count(), "Bytes from DRAM.")
       .written("written", &ArrayBytes::written, form::count(), "Bytes to DRAM.")
       .written("compressed", &ArrayBytes::compressed, form::count(), "Those of both that are of compressed blocks.")
-      .written("l2", &ArrayBytes::l2, form::count(), "Bytes asked of L2.");
-}
-
-ArrayBytes array_bytes_of(const Json& json) {
-  const auto bytes = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
-  return {stage_named(json),   json.at("array").get<std::string>(), bytes("read"), bytes("written"),
-          bytes("compressed"), json.value("l2", std::uint64_t{0})};
+      .written("l2", &ArrayBytes::l2, form::count(), "Bytes asked of L2.")
+      .may_lack();
 }
 
 Form<StoppedDraw> stopped_form() {
@@ -218,10 +218,8 @@ std::optional<Json> saved_of(const FrameOf& of) {
 }
 
 Form<FrameOf> make_frame_form() {
-  const auto member = [](auto FrameReport::*place) { return [place](const FrameOf& of) { return of.frame.*place; }; };
-  const auto filled = [](auto FrameReport::*place) {
-    return [get = form::filled(place)](const FrameOf& of) { return get(of.frame); };
-  };
+  const auto member = []<class Value>(Value FrameReport::*place) { return OfReport<Value>{place}; };
+  const auto filled = []<class Value>(Value FrameReport::*place) { return FilledOfReport<Value>{place}; };
   const auto part = [](double ErrorParts::*place) {
     return [place](const FrameOf& of) {
       return of.frame.parts ? std::optional(of.frame.parts.value().*place) : std::nullopt;
@@ -238,7 +236,12 @@ Form<FrameOf> make_frame_form() {
       .written("error", member(&Frame::error), error_form(), "Differences from the reference.")
       .written("visibility", part(&ErrorParts::visibility), rmse_form(),
                "The error in visibility, where surfaces vary.")
+      .taken(
+          [](const Json& json, FrameOf& of) { of.read_back_to->parts = {.visibility = json.at("rmse").get<double>()}; })
       .written("shading", part(&ErrorParts::shading), rmse_form(), "The error in shading, where surfaces vary.")
+      .taken([](const Json& json, FrameOf& of) {
+        if (of.read_back_to->parts) of.read_back_to->parts->shading = json.at("rmse").get<double>();
+      })
       .written("flicker", member(&Frame::flicker), form::amount(),
                "Root mean square change of the error since the previous frame.")
       .written("wall_ms", member(&Frame::wall_ms), wall_form(), "Time of the simulator, in milliseconds.")
@@ -260,6 +263,10 @@ Form<FrameOf> make_frame_form() {
             column, [&counter](const FrameOf& of) { return std::uint64_t{counter.value(of.all)}; }, form::count(),
             "Sum over the stages.");
   return form.written("buffers", buffers_of, form::list(buffer_form()), "Every buffer at its peak.")
+      .taken([list = form::list(buffer_form())](const Json& json, FrameOf& of) {
+        take(list, json, of.read_back_to->buffers);
+        std::erase_if(of.read_back_to->buffers, [](const Buffer& buffer) { return buffer.name == kABuffer; });
+      })
       .written("pixel_counters", filled(&Frame::pixel_counters), form::by_name(statistics_form()),
                "Statistics of each counter of pixels, by name.")
       .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),
@@ -278,11 +285,13 @@ const Form<FrameOf>& frame_form() {
 }  // namespace
 
 Form<ErrorStats> error_form() {
-  ObjectForm<ErrorStats> form;
+  ObjectForm<ErrorStats> object;
   for (const Measure& measure : measures()) {
     const Form<double> number = measure.may_be_negative ? form::number() : form::amount();
-    form.written(measure.key, measure.value, number, measure.meaning);
+    object.written(measure.key, measure.value, number, measure.meaning);
   }
+  Form<ErrorStats> form = object;
+  form.take = [](const Json& json, ErrorStats& stats) { stats = error_of(json); };
   return form;
 }
 
@@ -307,7 +316,7 @@ Form<double> rmse_form() {
 Json frame_schema() { return frame_form().schema; }
 
 Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware) {
-  FrameOf of{frame, result, {}};
+  FrameOf of{frame, result};
   for (const StageCounters& stage : frame.stages) of.all += stage;
   Json json = frame_form().write(of);
   if (of.all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
@@ -337,36 +346,11 @@ Json* find_stage(std::vector<Json>& stages, std::string_view name) {
 }
 
 FrameReport frame_of(const Json& json) {
+  if (json.contains("visibility")) static_cast<void>(json.at("shading"));
   FrameReport frame;
-  frame.index = json.at("index").get<std::size_t>();
-  frame.image = json.at("image").get<std::string>();
-  frame.picture = json.at("picture").get<std::string>();
-  frame.counters = json.value("counters", std::string());
-  if (const Json* error = json.find("error")) frame.error = error_of(*error);
-  if (const Json* visibility = json.find("visibility"))
-    frame.parts = {visibility->at("rmse").get<double>(), json.at("shading").at("rmse").get<double>()};
-  if (const Json* flicker = json.find("flicker")) frame.flicker = flicker->get<double>();
-  frame.wall_ms = wall_time_of(json.at("wall_ms"));
-  frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes").get<std::uint64_t>();
-  frame.bin_pixels = json.at("bin_pixels").get<std::uint64_t>();
-  for (const auto& [key, of_bins] :
-       {std::pair{"bin_operations", &frame.bin_operations}, {"bin_invocations", &frame.bin_invocations}})
-    if (const Json* const list = json.find(key))
-      for (const Json& of_bin : list->elements()) of_bins->push_back(of_bin.get<std::uint64_t>());
-  if (const Json* const arrays = json.find("dram_arrays"))
-    for (const Json& each : arrays->elements()) frame.dram_arrays.push_back(array_bytes_of(each));
-  if (const Json* const stopped = json.find("stopped"))
-    for (const Json& each : stopped->elements())
-      frame.stopped.push_back({each.at("draw").get<std::uint64_t>(), each.at("invocations").get<std::uint64_t>()});
-  for (const Json& buffer : json.at("buffers").elements())
-    if (buffer.at("name") != kABuffer)
-      frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),
-                               buffer.at("held") == kHeldByBin});
-  if (const Json* counters = json.find("pixel_counters"))
-    for (const auto& [name, stats] : counters->members())
-      frame.pixel_counters[name] = {stats.at("mean").get<double>(), stats.at("max").get<double>(),
-                                    stats.at("share").get<double>()};
-  for (const Json& stage : json.at("stages").elements()) frame.stages.push_back(stage_of(stage));
+  const TechniqueReport unknown;
+  FrameOf of{.frame = frame, .result = unknown, .read_back_to = &frame};
+  take(frame_form(), json, of);
   return frame;
 }
 

@@ -18,6 +18,9 @@ struct Form {
   // Throws TraceError if the value at a place has another form. What it leaves out keeps its value.
   std::function<void(const JsonCursor& at, T& value)> read;
   std::function<Json(const T& value)> write = {};  // empty where nothing is written from Json
+  // Reads back what was written, by this program or by an older one: other keys may be there. Throws JsonError. Empty
+  // for numbers and texts, and where nothing is read back.
+  std::function<void(const Json& json, T& value)> take = {};
 
   T operator()(const JsonCursor& at) const {
     T value{};
@@ -25,6 +28,16 @@ struct Form {
     return value;
   }
 };
+
+// Form::take of any form.
+template <class T>
+void take(const Form<T>& form, const Json& json, T& value) {
+  if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    value = json.get<T>();
+  } else {
+    form.take(json, value);
+  }
+}
 
 // What the value of a key means, beside its form.
 Json described(Json schema, const std::string& meaning);
@@ -39,8 +52,10 @@ struct Field {
   bool required = true;
   Json schema = {};
   std::function<void(const JsonCursor& at, T& object)> read = {};
-  std::function<Json(const T& object)> get = {};          // empty where nothing is written from Json
-  std::function<bool(const T& object)> is_left_out = {};  // empty: it is always written
+  std::function<Json(const T& object)> get = {};               // empty where nothing is written from Json
+  std::function<bool(const T& object)> is_left_out = {};       // empty: it is always written
+  std::function<void(const Json& json, T& object)> take = {};  // empty where it is not read back
+  bool may_lack = false;  // what was written may be without it, although it is always written now
 };
 
 // The form of objects, as a list of their members: of each the key, where it stands in a T (a pointer to a member, or a
@@ -85,7 +100,8 @@ class ObjectForm {
     return *this;
   }
 
-  // It is only written. `place` gives a Value, or a std::optional of one, which may be left out.
+  // It is written, and read back by Form::take if `place` is a pointer to a member, or has a `ref` that gives a
+  // reference. `place` gives a Value, or a std::optional of one, which may be left out.
   template <class Place, class Value>
   ObjectForm& written(const std::string& key, Place place, const Form<Value>& form, const std::string& meaning) {
     using Stored = std::remove_cvref_t<std::invoke_result_t<Place, const T&>>;
@@ -97,7 +113,24 @@ class ObjectForm {
     } else {
       field.get = [place, form](const T& object) { return form.write(std::invoke(place, object)); };
     }
+    if constexpr (std::is_member_object_pointer_v<Place>) {
+      field.take = [place, form](const Json& json, T& object) { take_into(form, json, object.*place); };
+    } else if constexpr (requires(T & object) { place.ref(object); }) {
+      field.take = [place, form](const Json& json, T& object) { take_into(form, json, place.ref(object)); };
+    }
     return add(std::move(field));
+  }
+
+  // How the last member is read back, where its place does not say it.
+  ObjectForm& taken(std::function<void(const Json& json, T& object)> take) {
+    fields_.back().take = std::move(take);
+    return *this;
+  }
+
+  // Older programs did not write the last member.
+  ObjectForm& may_lack() {
+    fields_.back().may_lack = true;
+    return *this;
   }
 
   // It is described only; what writes the object adds it.
@@ -116,7 +149,7 @@ class ObjectForm {
     return *this;
   }
 
-  operator Form<T>() const { return {schema(), reader(), writer()}; }
+  operator Form<T>() const { return {schema(), reader(), writer(), taker()}; }
 
  private:
   Json schema() const {
@@ -167,6 +200,27 @@ class ObjectForm {
     };
   }
 
+  template <class Value, class Stored>
+  static void take_into(const Form<Value>& form, const Json& json, Stored& stored) {
+    if constexpr (std::is_same_v<Stored, std::optional<Value>>) {
+      beampipe::take(form, json, stored.emplace());
+    } else if constexpr (std::is_same_v<Stored, Value>) {
+      beampipe::take(form, json, stored);
+    } else {
+      stored = json.get<Stored>();  // another type of integer
+    }
+  }
+
+  auto taker() const {
+    return [self = std::make_shared<const ObjectForm>(*this)](const Json& json, T& object) {
+      for (const Field<T>& field : self->fields_) {
+        if (!field.take) continue;
+        const Json* const value = field.required && !field.may_lack ? &json.at(field.key) : json.find(field.key);
+        if (value) field.take(*value, object);
+      }
+    };
+  }
+
   std::string keys_;  // how errors call the keys; empty: they list them
   std::vector<Field<T>> fields_;
   std::vector<std::function<void(const JsonCursor&, T&)>> checks_;
@@ -211,6 +265,9 @@ Form<std::vector<Value>> list(const Form<Value>& element, const std::string& one
             Json json = Json::array();
             for (const Value& value : values) json.push_back(element.write(value));
             return json;
+          },
+          [element](const Json& json, std::vector<Value>& values) {
+            for (const Json& each : json.elements()) take(element, each, values.emplace_back());
           }};
 }
 
@@ -244,6 +301,9 @@ Form<std::map<std::string, Value>> by_name(const Form<Value>& element) {
             Json json = Json::object();
             for (const auto& [name, value] : values) json[name] = element.write(value);
             return json;
+          },
+          [element](const Json& json, std::map<std::string, Value>& values) {
+            for (const auto& [name, value] : json.members()) take(element, value, values[name]);
           }};
 }
 
