@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "hwy/highway.h"
 
@@ -19,19 +20,41 @@ HWY_BEFORE_NAMESPACE();
 namespace beampipe {
 namespace HWY_NAMESPACE {
 
-// Lanes past `count` repeat the last row, so that no lane holds garbage.
-template <class Columns, class Row>
-HWY_INLINE Columns load_rows(const Row* HWY_RESTRICT rows, std::size_t count) {
+// Lane i has *row_of(i).
+template <class Columns, class RowOf>
+HWY_INLINE Columns gather_rows(const RowOf& row_of) {
+  using Row = std::remove_cvref_t<decltype(*row_of(std::size_t{}))>;
   constexpr std::size_t kMembers = sizeof(Row) / sizeof(std::uint32_t), kLanes = sizeof(Columns) / sizeof(Row);
   Columns columns;
   auto* const bytes = reinterpret_cast<unsigned char*>(&columns);
   const unsigned char* row[kLanes];
-  for (std::size_t lane = 0; lane < kLanes; ++lane)
-    row[lane] = reinterpret_cast<const unsigned char*>(rows + HWY_MIN(lane, count - 1));
+  for (std::size_t lane = 0; lane < kLanes; ++lane) row[lane] = reinterpret_cast<const unsigned char*>(row_of(lane));
   for (std::size_t i = 0; i < kMembers; ++i) {
     std::uint32_t member[kLanes];
     for (std::size_t lane = 0; lane < kLanes; ++lane) std::memcpy(member + lane, row[lane] + 4 * i, 4);
     std::memcpy(bytes + i * sizeof member, member, sizeof member);
+  }
+  return columns;
+}
+
+// Lanes past `count` repeat the last row, so that no lane holds garbage.
+template <class Columns, class Row>
+HWY_INLINE Columns load_rows(const Row* HWY_RESTRICT rows, std::size_t count) {
+  return gather_rows<Columns>([=](std::size_t lane) { return rows + HWY_MIN(lane, count - 1); });
+}
+
+// The same row in every lane.
+template <class Columns, class Row>
+HWY_INLINE Columns repeat_row(const Row& row) {
+  constexpr std::size_t kMembers = sizeof(Row) / sizeof(std::uint32_t), kLanes = sizeof(Columns) / sizeof(Row);
+  Columns columns;
+  auto* const bytes = reinterpret_cast<unsigned char*>(&columns);
+  for (std::size_t i = 0; i < kMembers; ++i) {
+    std::uint32_t member;
+    std::memcpy(&member, reinterpret_cast<const unsigned char*>(&row) + 4 * i, 4);
+    const Words everywhere(member);
+    static_assert(sizeof everywhere == kLanes * sizeof member);
+    std::memcpy(bytes + i * sizeof everywhere, &everywhere, sizeof everywhere);
   }
   return columns;
 }
@@ -58,6 +81,30 @@ HWY_INLINE void map_rows(const In* HWY_RESTRICT in, std::size_t count, Out* HWY_
     const std::size_t n = HWY_MIN(kLanes, count - first);
     store_rows(formula(load_rows<Columns>(in + first, n)), n, out + first);
   }
+}
+
+// A block is the same struct again, with an array for each member: the rows that lie in it, a whole number of vectors.
+// `first`: of the rows that are loaded or stored.
+template <class Columns, class Block>
+HWY_INLINE Columns load_columns(const Block& block, std::size_t first) {
+  constexpr std::size_t kVectors = sizeof(Block) / sizeof(Columns);
+  constexpr std::size_t kMembers = sizeof(Columns) / sizeof(Words);
+  Columns columns;
+  const auto* const from = reinterpret_cast<const unsigned char*>(&block) + first * sizeof(std::uint32_t);
+  auto* const to = reinterpret_cast<unsigned char*>(&columns);
+  for (std::size_t i = 0; i < kMembers; ++i)
+    std::memcpy(to + i * sizeof(Words), from + i * kVectors * sizeof(Words), sizeof(Words));
+  return columns;
+}
+
+template <class Columns, class Block>
+HWY_INLINE void store_columns(const Columns& columns, std::size_t first, Block& block) {
+  constexpr std::size_t kVectors = sizeof(Block) / sizeof(Columns);
+  constexpr std::size_t kMembers = sizeof(Columns) / sizeof(Words);
+  const auto* const from = reinterpret_cast<const unsigned char*>(&columns);
+  auto* const to = reinterpret_cast<unsigned char*>(&block) + first * sizeof(std::uint32_t);
+  for (std::size_t i = 0; i < kMembers; ++i)
+    std::memcpy(to + i * kVectors * sizeof(Words), from + i * sizeof(Words), sizeof(Words));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -26,7 +26,6 @@ using SurfaceVertex = SurfaceVertexOf<float>;
 template <class Real>
 struct ScreenPlane {
   Real value{}, dx{}, dy{};
-  Real at(Real x, Real y) const { return value + dx * x + dy * y; }  // pixels from the anchor
 };
 
 // Weights of a triangle's second and third vertex; the first one has the rest. `dx` and `dy`: per pixel.
@@ -46,28 +45,10 @@ struct BarycentricPlanes {
 // it may go.
 inline constexpr float kMostWeight = 16.0f;
 
-template <class Real>
-Real limited_weight(Real weight) {
-  return lesser(greater(weight, Real(-kMostWeight)), Real(1.0f + kMostWeight));
+namespace scalar {
+#include "stages/data/surface-inl.h"
 }
-
-// (x, y): pixels from the anchor.
-template <class Real>
-Barycentrics<Real> weights_at(const BarycentricPlanes<Real>& planes, Real x, Real y) {
-  const Real w = Real(1.0f) / planes.inverse_w.at(x, y);
-  return {limited_weight(planes.second.at(x, y) * w), limited_weight(planes.third.at(x, y) * w)};
-}
-
-// How the weights change per pixel, to the right and down, at a point where they are `weights`.
-template <class Real>
-std::array<Barycentrics<Real>, 2> weight_slopes(const BarycentricPlanes<Real>& planes, Real x, Real y,
-                                                const Barycentrics<Real>& weights) {
-  const Real w = Real(1.0f) / planes.inverse_w.at(x, y);
-  return {{{(planes.second.dx - weights.second * planes.inverse_w.dx) * w,
-            (planes.third.dx - weights.third * planes.inverse_w.dx) * w},
-           {(planes.second.dy - weights.second * planes.inverse_w.dy) * w,
-            (planes.third.dy - weights.third * planes.inverse_w.dy) * w}}};
-}
+using namespace scalar;
 
 inline constexpr std::uint32_t kFlatSurface = ~0u;
 inline constexpr std::uint32_t kProgramSurface = kFlatSurface - 1;  // the draw's program shades it

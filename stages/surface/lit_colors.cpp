@@ -14,16 +14,24 @@ namespace HWY_NAMESPACE {
 
 #include "stages/surface/surface_formulas-inl.h"
 
-void lit_colors_kernel(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<float>* points,
+// Sets results[i] to formula(row i of the block).
+template <class Columns, class Block, class Result, class Formula>
+HWY_INLINE void map_columns(const Block& block, std::size_t count, Result* results, const Formula& formula) {
+  constexpr std::size_t kLanes = sizeof(Floats) / sizeof(float);
+  for (std::size_t first = 0; first < count; first += kLanes)
+    store_rows(formula(load_columns<Columns>(block, first)), HWY_MIN(kLanes, count - first), results + first);
+}
+
+void lit_colors_kernel(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<PointColumn>& points,
                        std::size_t count, glm::vec3* colors) {
-  map_rows<PointInputs<Floats>>(points, count, colors, [&](const PointInputs<Floats>& point) HWY_ATTR {
+  map_columns<PointInputs<Floats>>(points, count, colors, [&](const PointInputs<Floats>& point) HWY_ATTR {
     return lit_color(shader.material, material_of(shader, point), lighting);
   });
 }
 
-void light_ranges_kernel(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<float>* areas,
+void light_ranges_kernel(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<PointColumn>& areas,
                          std::size_t count, float* ranges) {
-  map_rows<AreaInputs<Floats>>(areas, count, ranges, [&](const AreaInputs<Floats>& area) HWY_ATTR {
+  map_columns<AreaInputs<Floats>>(areas, count, ranges, [&](const AreaInputs<Floats>& area) HWY_ATTR {
     return light_range(shader, area, lighting);
   });
 }
@@ -37,12 +45,12 @@ namespace beampipe {
 HWY_EXPORT(lit_colors_kernel);
 HWY_EXPORT(light_ranges_kernel);
 
-void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<float>* points,
+void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<PointColumn>& points,
                 std::size_t count, glm::vec3* colors) {
   HWY_DYNAMIC_DISPATCH(lit_colors_kernel)(shader, lighting, points, count, colors);
 }
 
-void light_ranges(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<float>* areas,
+void light_ranges(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<PointColumn>& areas,
                   std::size_t count, float* ranges) {
   HWY_DYNAMIC_DISPATCH(light_ranges_kernel)(shader, lighting, areas, count, ranges);
 }

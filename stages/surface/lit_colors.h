@@ -4,17 +4,17 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 
-#include "stages/surface/surface_formulas.h"
+#include "stages/surface/surface_points.h"
 
 namespace beampipe {
 
-// Sets colors[i] to the light, linear RGB, that points[i] reflects and emits towards the eye: lit_color of material_of,
+// Sets colors[i] to the light, linear RGB, that point i reflects and emits towards the eye: lit_color of material_of,
 // to the last bit.
-void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<float>* points,
+void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<PointColumn>& points,
                 std::size_t count, glm::vec3* colors);
 
-// Sets ranges[i] to light_range of areas[i], to the last bit.
-void light_ranges(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<float>* areas,
+// Sets ranges[i] to light_range of area i, to the last bit.
+void light_ranges(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<PointColumn>& areas,
                   std::size_t count, float* ranges);
 
 }  // namespace beampipe

@@ -1,6 +1,62 @@
 // The formulas of stages/surface/surface_formulas.h that are computed for several points at once. No include guard: see
 // simd/scalar.h.
 
+// A vertex attribute at a point of the triangle.
+template <class Real>
+Real interpolated(const Real& first, const Real& second, const Real& third, const Barycentrics<Real>& weights) {
+  return first + weights.second * (second - first) + weights.third * (third - first);
+}
+
+// How an attribute changes.
+template <class Real>
+Real interpolated_slope(const Real& first, const Real& second, const Real& third, const Barycentrics<Real>& slopes) {
+  return slopes.second * (second - first) + slopes.third * (third - first);
+}
+
+// Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
+template <class Real>
+TexturePlace<Real> place_on_triangle(const std::array<std::array<Real, 2>, 3>& uvs,
+                                     const BarycentricPlanes<Real>& planes, const Real& x, const Real& y,
+                                     const Barycentrics<Real>& weights) {
+  const std::array<Barycentrics<Real>, 2> slopes = weight_slopes(planes, x, y, weights);
+  TexturePlace<Real> found;
+  for (std::size_t c = 0; c < 2; ++c) {
+    found.uv[c] = interpolated(uvs[0][c], uvs[1][c], uvs[2][c], weights);
+    found.dx[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[0]);
+    found.dy[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[1]);
+  }
+  return found;
+}
+
+// How texture coordinates change along the sides of a footprint, in place of per pixel. `right`, `down`, `height`: xx,
+// xy and yy of the Footprint.
+template <class Real>
+TexturePlace<Real> along_sides(TexturePlace<Real> place, const Real& right, const Real& down, const Real& height) {
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Real straight = place.dx[c] * right;
+    place.dx[c] = select(down == Real(0.0f), straight, straight + place.dy[c] * down);
+    place.dy[c] = place.dy[c] * height;
+  }
+  return place;
+}
+
+// Sets what the material needs of the triangle and its vertices. attribute(member_of) gives what member_of(vertex)
+// returns of the three vertices, interpolated.
+template <class Real, class Attribute>
+void set_attributes(const ShaderInputs& shader, const TriangleInputs<Real>& triangle, const Attribute& attribute,
+                    PointInputs<Real>& found) {
+  if (shader.has_vertex_colors) found.color = attribute([](const auto& vertex) -> auto& { return vertex.color; });
+  if (shader.material.unlit) return;
+  found.to_eye = attribute([](const auto& vertex) -> auto& { return vertex.to_eye; });
+  found.normal = shader.has_own_normal ? triangle.own_normal
+                                       : attribute([](const auto& vertex) -> auto& { return vertex.normal; });
+  found.facing = triangle.facing;
+  if (!shader.material.normal_texture) return;
+  found.tangent = shader.has_tangents ? attribute([](const auto& vertex) -> auto& { return vertex.tangent; })
+                                      : triangle.tangent;
+  found.tangent_sign = triangle.tangent_sign;
+}
+
 template <class Real>
 Real dot(const Triple<Real>& a, const Triple<Real>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -32,18 +32,6 @@ struct Reflector {
 inline constexpr float kLeastRoughness = 0.1f;
 inline constexpr float kDielectricReflectance = 0.04f;
 
-// A vertex attribute at a point of the triangle.
-template <class Real>
-Real interpolated(const Real& first, const Real& second, const Real& third, const Barycentrics<Real>& weights) {
-  return first + weights.second * (second - first) + weights.third * (third - first);
-}
-
-// How an attribute changes.
-template <class Real>
-Real interpolated_slope(const Real& first, const Real& second, const Real& third, const Barycentrics<Real>& slopes) {
-  return slopes.second * (second - first) + slopes.third * (third - first);
-}
-
 // What a material's shader is made for.
 struct ShaderInputs {
   const Material& material;
@@ -124,22 +112,6 @@ void for_each_texture(const Material& material, Visit&& visit) {
             &PointInputs<Real>::metallic_roughness_texel);
   visit_one(TextureRole::normal, material.normal_texture, &PointInputs<Real>::normal_texel);
   visit_one(TextureRole::emissive, material.emissive_texture, &PointInputs<Real>::emissive_texel);
-}
-
-// Sets what the material needs of the triangle and its vertices. attribute(member) gives that member of
-// SurfaceVertexOf, interpolated.
-template <class Real, class Attribute>
-void set_attributes(const ShaderInputs& shader, const TriangleInputs<Real>& triangle, Attribute&& attribute,
-                    PointInputs<Real>& found) {
-  using Vertex = SurfaceVertexOf<Real>;
-  if (shader.has_vertex_colors) found.color = attribute(&Vertex::color);
-  if (shader.material.unlit) return;
-  found.to_eye = attribute(&Vertex::to_eye);
-  found.normal = shader.has_own_normal ? triangle.own_normal : attribute(&Vertex::normal);
-  found.facing = triangle.facing;
-  if (!shader.material.normal_texture) return;
-  found.tangent = shader.has_tangents ? attribute(&Vertex::tangent) : triangle.tangent;
-  found.tangent_sign = triangle.tangent_sign;
 }
 
 // Alpha alone, as in SurfaceMaterial. place and fetch: as above; `vertex_alphas`: of the vertices' colours.

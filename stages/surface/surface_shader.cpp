@@ -20,32 +20,41 @@ namespace {
 
 glm::vec2 vector_of(const std::array<float, 2>& v) { return {v[0], v[1]}; }
 
-// How texture coordinates change along the sides of a footprint.
-TextureSlopes along_sides(const TexturePlace<float>& at, const Footprint& footprint) {
-  const glm::vec2 dx = vector_of(at.dx), dy = vector_of(at.dy);
-  const glm::vec2 right = dx * footprint.xx;
-  return {footprint.xy == 0.0f ? right : right + dy * footprint.xy, dy * footprint.yy};
+// Along the sides of the footprint.
+TextureSlopes slopes_of(const TexturePlace<float>& place) { return {vector_of(place.dx), vector_of(place.dy)}; }
+// Of point i.
+TextureSlopes slopes_of(const TexturePoints& points, std::size_t i) {
+  return {{points.dx[0][i], points.dx[1][i]}, {points.dy[0][i], points.dy[1][i]}};
+}
+glm::vec2 uv_of(const TexturePoints& points, std::size_t i) { return {points.uv[0][i], points.uv[1][i]}; }
+
+// Sets the member at point i.
+template <std::size_t kCount>
+void set_row(std::array<PointColumn, kCount>& column, std::size_t i, const std::array<float, kCount>& row) {
+  for (std::size_t c = 0; c < kCount; ++c) column[c][i] = row[c];
 }
 
-// Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
-template <class Real>
-TexturePlace<Real> place_on_triangle(const std::array<std::array<Real, 2>, 3>& uvs,
-                                     const BarycentricPlanes<Real>& planes, const Real& x, const Real& y,
-                                     const Barycentrics<Real>& weights) {
-  const std::array<Barycentrics<Real>, 2> slopes = weight_slopes(planes, x, y, weights);
-  TexturePlace<Real> found;
-  for (std::size_t c = 0; c < 2; ++c) {
-    found.uv[c] = interpolated(uvs[0][c], uvs[1][c], uvs[2][c], weights);
-    found.dx[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[0]);
-    found.dy[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[1]);
-  }
+// The middles of an area's right and lower side, from its own.
+Invocation right_of(Invocation middle) {
+  middle.place.u += 0.5f * middle.footprint.xx, middle.place.v += 0.5f * middle.footprint.xy;
+  return middle;
+}
+Invocation below(Invocation middle) {
+  middle.place.v += 0.5f * middle.footprint.yy;
+  return middle;
+}
+
+// Textures that matter to light_range().
+bool is_of_area(TextureRole role) { return role == TextureRole::normal || role == TextureRole::metallic_roughness; }
+bool is_any(TextureRole) { return true; }
+
+// Is one of the material's textures, of those that are wanted, read at this set of texture coordinates?
+bool reads(const Material& material, std::size_t set, bool (*is_wanted)(TextureRole)) {
+  bool found = false;
+  for_each_texture<float>(material, [&](TextureRole role, const Texture& texture, auto) {
+    found = found || (is_wanted(role) && texture.uv_set == set);
+  });
   return found;
-}
-
-// Into the triangle.
-Barycentrics<float> clamped(const Barycentrics<float>& weights) {
-  const float second = std::clamp(weights.second, 0.0f, 1.0f);
-  return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
 }
 
 ColorSpace space_of(TextureRole role) {
@@ -127,8 +136,8 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     const auto place = [&](std::uint32_t set) {
       if (!places[set]) places[set] = counted_place(vertex, set, planes, weights, derivatives);
     };
-    const auto attribute = [&](auto member) {
-      auto result = vertex.*member;
+    const auto attribute = [&](const auto& member_of) {
+      auto result = member_of(vertex);
       for (Real& number : result) number = interpolated(number, number, number, weights);
       return result;
     };
@@ -183,8 +192,8 @@ OperationCounts range_cost(const ShaderInputs& shader, const Lighting& lighting)
     inputs.color = {one, one, one, one};
     for (int point = 0; point < 3; ++point) {
       const Barycentrics<Real> weights = weights_at(planes, one, one);
-      const auto attribute = [&](auto member) {
-        auto result = vertex.*member;
+      const auto attribute = [&](const auto& member_of) {
+        auto result = member_of(vertex);
         for (Real& number : result) number = interpolated(number, number, number, weights);
         return result;
       };
@@ -435,7 +444,8 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
                                     weights);
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
-    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), along_sides(at, footprint)));
+    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv),
+                                   slopes_of(along_sides(at, footprint.xx, footprint.xy, footprint.yy))));
   };
   const float alpha =
       alpha_at(shader, {vertex(0).color[3], vertex(1).color[3], vertex(2).color[3]}, weights, texture_place, fetch);
@@ -580,35 +590,6 @@ CutoutCover SurfaceShader::tested_cover(std::uint32_t triangle, const ShadingPla
   return cover;
 }
 
-// A point of a triangle.
-struct SurfaceShader::Point {
-  const SetupSurface& surface;
-  std::array<const SurfaceVertex*, 3> vertices;
-  float x, y;  // pixels from the anchor
-  Barycentrics<float> weights;
-
-  // first, second, third: of the vertices.
-  template <std::size_t kCount>
-  std::array<float, kCount> interpolated(const std::array<float, kCount>& first,
-                                         const std::array<float, kCount>& second,
-                                         const std::array<float, kCount>& third) const {
-    std::array<float, kCount> found;
-    for (std::size_t i = 0; i < kCount; ++i) found[i] = beampipe::interpolated(first[i], second[i], third[i], weights);
-    return found;
-  }
-  template <class Member>
-  Member attribute(Member SurfaceVertex::*member) const {
-    return interpolated(vertices[0]->*member, vertices[1]->*member, vertices[2]->*member);
-  }
-  std::array<std::array<float, 2>, 3> uvs(std::size_t set) const {
-    return {vertices[0]->uvs[set], vertices[1]->uvs[set], vertices[2]->uvs[set]};
-  }
-  std::array<float, 2> uv(std::size_t set) const {
-    const auto [first, second, third] = uvs(set);
-    return interpolated(first, second, third);
-  }
-};
-
 // Invocations of one shader, which wait until there are enough of them.
 struct SurfaceShader::Batch {
   std::size_t work;  // index into works_
@@ -616,7 +597,7 @@ struct SurfaceShader::Batch {
   std::vector<std::size_t> places;  // of what is found
 };
 
-// Sorts invocations into batches. run(batch): of at most kMostInvocations.
+// Sorts invocations into batches. run(batch): of at most kMostPoints.
 template <class Run>
 class SurfaceShader::Batches {
  public:
@@ -633,7 +614,7 @@ class SurfaceShader::Batches {
     Batch& batch = batches_[current_];
     batch.invocations.push_back(invocation);
     batch.places.push_back(place);
-    if (batch.places.size() == kMostInvocations) finish(batch);
+    if (batch.places.size() == kMostPoints) finish(batch);
   }
 
   // Those that still wait.
@@ -655,71 +636,99 @@ class SurfaceShader::Batches {
   std::size_t current_ = 0;  // most invocations have the shader of the one before
 };
 
-AreaInputs<float> SurfaceShader::area_inputs(const Invocation& invocation, const ShaderInputs& shader,
-                                             TexelRequests* texels) const {
-  const Footprint& footprint = invocation.footprint;
-  const auto point_beside = [&](float x, float y) {
-    ShadingPlace place = invocation.place;
-    place.u += x, place.v += y;
-    return point_at(invocation.triangle, place);
-  };
-  const Point middle = point_at(invocation.triangle, invocation.place),
-              right = point_beside(0.5f * footprint.xx, 0.5f * footprint.xy),
-              below = point_beside(0, 0.5f * footprint.yy);
-  AreaInputs<float> area{};
-  set_inputs(invocation.triangle, middle, shader, area.middle);
-  area.right_to_eye = right.attribute(&SurfaceVertex::to_eye);
-  area.below_to_eye = below.attribute(&SurfaceVertex::to_eye);
-  if (!shader.has_own_normal) {
-    area.right_normal = right.attribute(&SurfaceVertex::normal);
-    area.below_normal = below.attribute(&SurfaceVertex::normal);
+SurfaceShader::AreaTexel SurfaceShader::area_texel(TextureRole role, const Texture& texture, const Material& material,
+                                                   const glm::vec2& uv, const TextureSlopes& slopes,
+                                                   TexelRequests* texels) const {
+  if (!is_of_area(role)) return {};
+  const ColorSpace space = space_of(role);
+  const MipChain& chain = textures_->chain(texture.image, space);
+  const CoveringLevel covering = covering_level(chain, slopes);
+  const TexelQuad quad = texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
+  const auto& all = quad.texels;
+  const glm::vec4 least = glm::min(glm::min(all[0], all[1]), glm::min(all[2], all[3])),
+                  most = glm::max(glm::max(all[0], all[1]), glm::max(all[2], all[3]));
+  const glm::vec4 mean = (all[0] + all[1] + all[2] + all[3]) * 0.25f;
+  if (role == TextureRole::metallic_roughness) return {{mean.r, least.g, most.b, 1.0f}};
+  // What four texels span, they span over a length of one texel. A texel of several is the shorter the more they
+  // differ.
+  const glm::vec2 span = (glm::vec2(most) - glm::vec2(least)) * std::min(covering.side, 1.0f);
+  AreaTexel found{{mean.r, mean.g, mean.b, 0.0f}, std::abs(material.normal_scale) * glm::length(span)};
+  if (covering.level > 0) {
+    const float mean_length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
+    found.around_within_texels = std::sqrt(2.0f * (1.0f - mean_length));
   }
+  return found;
+}
+
+AreaInputs<float> SurfaceShader::find_area(const Invocation& invocation, TexelRequests* texels) const {
+  const ShaderInputs shader = inputs_of(invocation.triangle);
+  AreaInputs<float> area{};
+  std::array<TexturePlace<float>, 2> places;
+  with_point(triangles_, point_rules(), invocation, [&](const auto& point) {
+    point.set_inputs(shader, area.middle);
+    for (std::size_t set = 0; set < 2; ++set)
+      if (reads(shader.material, set, is_of_area)) places[set] = point.place(set);
+  });
+  const auto beside = [&](const Invocation& there, Triple<float>& to_eye, Triple<float>& normal) {
+    PointInputs<float> inputs{};
+    with_point(triangles_, point_rules(), there, [&](const auto& point) { point.set_inputs(shader, inputs); });
+    to_eye = inputs.to_eye, normal = inputs.normal;
+  };
+  beside(right_of(invocation), area.right_to_eye, area.right_normal);
+  beside(below(invocation), area.below_to_eye, area.below_normal);
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
-    area.middle.*texel = {1.0f, 1.0f, 1.0f, 1.0f};
-    if (role != TextureRole::normal && role != TextureRole::metallic_roughness) return;
-    const ColorSpace space = space_of(role);
-    const MipChain& chain = textures_->chain(texture.image, space);
-    const auto [uv, slopes] = texture_point(invocation, middle, texture.uv_set);
-    const CoveringLevel covering = covering_level(chain, slopes);
-    const TexelQuad quad = texels_around(chain, texture, covering.level, uv, noting(texels, texture.image, space));
-    const auto& all = quad.texels;
-    const glm::vec4 least = glm::min(glm::min(all[0], all[1]), glm::min(all[2], all[3])),
-                    most = glm::max(glm::max(all[0], all[1]), glm::max(all[2], all[3]));
-    const glm::vec4 mean = (all[0] + all[1] + all[2] + all[3]) * 0.25f;
-    if (role == TextureRole::metallic_roughness) {
-      area.middle.*texel = {mean.r, least.g, most.b, 1.0f};
-      return;
-    }
-    // What four texels span, they span over a length of one texel. A texel of several is the shorter the more they
-    // differ.
-    const glm::vec2 span = (glm::vec2(most) - glm::vec2(least)) * std::min(covering.side, 1.0f);
-    area.around_of_texels = std::abs(shader.material.normal_scale) * glm::length(span);
-    if (covering.level > 0) {
-      const float mean_length = std::min(glm::length(glm::vec3(mean) * 2.0f - 1.0f), 1.0f);
-      area.around_within_texels = std::sqrt(2.0f * (1.0f - mean_length));
-    }
-    area.middle.*texel = {mean.r, mean.g, mean.b, 0.0f};
+    const TexturePlace<float>& at = places[texture.uv_set];
+    const AreaTexel found = area_texel(role, texture, shader.material, vector_of(at.uv), slopes_of(at), texels);
+    area.middle.*texel = found.texel;
+    if (role == TextureRole::normal)
+      area.around_of_texels = found.around_of_texels, area.around_within_texels = found.around_within_texels;
   });
   return area;
+}
+
+void SurfaceShader::find_areas(std::span<const Invocation> invocations, TexelRequests* texels,
+                               AreaInputs<PointColumn>& areas) const {
+  const ShaderInputs shader = inputs_of(invocations[0].triangle);
+  std::array<TexturePoints, 2> points;
+  find_points(triangles_, shader, point_rules(), invocations, &areas.middle,
+              {reads(shader.material, 0, is_of_area) ? &points[0] : nullptr,
+               reads(shader.material, 1, is_of_area) ? &points[1] : nullptr});
+  PointInputs<PointColumn> inputs;
+  const auto beside = [&](auto there, std::array<PointColumn, 3>& to_eye, std::array<PointColumn, 3>& normal) {
+    std::array<Invocation, kMostPoints> moved;
+    for (std::size_t i = 0; i < invocations.size(); ++i) moved[i] = there(invocations[i]);
+    find_points(triangles_, shader, point_rules(), std::span(moved).first(invocations.size()), &inputs, {});
+    to_eye = inputs.to_eye, normal = inputs.normal;
+  };
+  beside(right_of, areas.right_to_eye, areas.right_normal);
+  beside(below, areas.below_to_eye, areas.below_normal);
+  areas.around_of_texels.fill(0.0f), areas.around_within_texels.fill(0.0f);
+  for_each_texture<PointColumn>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
+    const TexturePoints& at = points[texture.uv_set];
+    for (std::size_t i = 0; i < invocations.size(); ++i) {
+      const AreaTexel found = area_texel(role, texture, shader.material, uv_of(at, i), slopes_of(at, i), texels);
+      set_row(areas.middle.*texel, i, found.texel);
+      if (role != TextureRole::normal) continue;
+      areas.around_of_texels[i] = found.around_of_texels, areas.around_within_texels[i] = found.around_within_texels;
+    }
+  });
 }
 
 float SurfaceShader::light_range(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
                                  TexelRequests* texels) const {
   if (!may_vary(triangle)) return 0.0f;
-  const ShaderInputs shader = inputs_of(triangle);
-  return beampipe::light_range(shader, area_inputs({triangle, place, footprint}, shader, texels), frame_.lighting);
+  return beampipe::light_range(inputs_of(triangle), find_area({triangle, place, footprint}, texels), frame_.lighting);
 }
 
 std::vector<float> SurfaceShader::light_ranges(const std::vector<Invocation>& invocations,
                                                TexelRequests* texels) const {
   std::vector<float> ranges(invocations.size());
-  std::array<AreaInputs<float>, kMostInvocations> areas;
-  std::array<float, kMostInvocations> found;
+  AreaInputs<PointColumn> areas;
+  PointColumn found;
   Batches batches(*this, [&](const Batch& batch) {
-    const ShaderInputs shader = inputs_of(batch.invocations[0].triangle);
     const std::size_t count = batch.invocations.size();
-    for (std::size_t i = 0; i < count; ++i) areas[i] = area_inputs(batch.invocations[i], shader, texels);
-    beampipe::light_ranges(shader, frame_.lighting, areas.data(), count, found.data());
+    find_areas(batch.invocations, texels, areas);
+    beampipe::light_ranges(inputs_of(batch.invocations[0].triangle), frame_.lighting, areas, count, found.data());
     for (std::size_t i = 0; i < count; ++i) ranges[batch.places[i]] = found[i];
   });
   for (std::size_t i = 0; i < invocations.size(); ++i)
@@ -752,7 +761,7 @@ CutoutCover SurfaceShader::cutout_cover(std::uint32_t triangle, const ShadingPla
                 y = static_cast<float>(place.y) + place.v - surface.anchor_y;
     const Barycentrics<float> weights = weights_at(surface.planes, x, y);
     const auto is_limited = [](float weight) { return !(weight > -kMostWeight && weight < 1 + kMostWeight); };
-    if (!(surface.planes.inverse_w.at(x, y) > 0) || is_limited(weights.second) || is_limited(weights.third))
+    if (!(value_at(surface.planes.inverse_w, x, y) > 0) || is_limited(weights.second) || is_limited(weights.third))
       return CutoutCover::mixed;
     const float alpha =
         alpha_there(triangle, place, 0.0f, [&](const Texture& of, const glm::vec2& uv, const TextureSlopes&) {
@@ -775,99 +784,66 @@ CutoutCover SurfaceShader::cutout_cover(std::uint32_t triangle, const ShadingPla
   return factor.most * of_texture.most * (1 + kRounding) < cutoff ? CutoutCover::none : CutoutCover::mixed;
 }
 
-SurfaceShader::Point SurfaceShader::point_at(std::uint32_t triangle, const ShadingPlace& place) const {
-  const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  const SetupSurface& surface = triangles_.surfaces[triangle];
-  Point point{.surface = surface,
-              .vertices = {},
-              .x = static_cast<float>(place.x) + (by_pixel ? 0.5f : place.u) - surface.anchor_x,
-              .y = static_cast<float>(place.y) + (by_pixel ? 0.5f : place.v) - surface.anchor_y,
-              .weights = {}};
-  for (std::size_t k = 0; k < 3; ++k) point.vertices[k] = &triangles_.vertices[surface.vertices[k]];
-  point.weights = weights_at(surface.planes, point.x, point.y);
-  if (by_pixel) point.weights = clamped(point.weights);
-  return point;
-}
-
-void SurfaceShader::set_inputs(std::uint32_t triangle, const Point& point, const ShaderInputs& shader,
-                               PointInputs<float>& inputs) const {
-  const SetupSurface& surface = point.surface;
-  const TriangleInputs<float> of_triangle{triple<float>(triangles_.attributes[triangle].normal),
-                                          surface.turned ? -1.0f : 1.0f, triple<float>(glm::vec3(surface.tangent)),
-                                          shader.has_tangents ? point.vertices[0]->tangent_sign : surface.tangent.w};
-  set_attributes(
-      shader, of_triangle, [&](auto member) { return point.attribute(member); }, inputs);
-}
-
-SurfaceShader::TexturePoint SurfaceShader::texture_point(const Invocation& invocation, const Point& point,
-                                                         std::size_t set) const {
-  const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  TexturePlace<float> at;
-  if (rules_.derivatives == Derivatives::quad && !by_pixel) {
-    // Slopes between the centres of the pixel and of its neighbours in the quad.
-    const auto uv_at_centre = [&](std::int32_t x, std::int32_t y) {
-      Point centre = point;
-      centre.weights = weights_at(point.surface.planes, static_cast<float>(x) + 0.5f - point.surface.anchor_x,
-                                  static_cast<float>(y) + 0.5f - point.surface.anchor_y);
-      return centre.uv(set);
-    };
-    const auto [x, y] = std::pair(invocation.place.x, invocation.place.y);
-    const auto here = uv_at_centre(x, y), beside = uv_at_centre(x ^ 1, y), above_or_below = uv_at_centre(x, y ^ 1);
-    at.uv = point.uv(set);
-    for (std::size_t c = 0; c < 2; ++c) {
-      at.dx[c] = x & 1 ? here[c] - beside[c] : beside[c] - here[c];
-      at.dy[c] = y & 1 ? here[c] - above_or_below[c] : above_or_below[c] - here[c];
-    }
-  } else {
-    at = place_on_triangle<float>(point.uvs(set), point.surface.planes, point.x, point.y, point.weights);
-  }
-  return {vector_of(at.uv), along_sides(at, by_pixel ? Footprint() : invocation.footprint)};
-}
-
-template <std::size_t kMost>
-void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRequests* texels,
-                                PointInputs<float>* inputs) const {
-  const ShaderInputs shader = inputs_of(invocations[0].triangle);
-  std::array<std::array<TexturePoint, kMost>, 2> points;  // by uv set
-  std::array<bool, 2> reads_set{};
-  for_each_texture<float>(shader.material,
-                          [&](TextureRole, const Texture& texture, auto) { reads_set[texture.uv_set] = true; });
-  for (std::size_t i = 0; i < invocations.size(); ++i) {
-    const Point point = point_at(invocations[i].triangle, invocations[i].place);
-    if (inputs) set_inputs(invocations[i].triangle, point, shader, inputs[i]);
-    for (std::size_t set = 0; set < 2; ++set)
-      if (reads_set[set]) points[set][i] = texture_point(invocations[i], point, set);
-  }
-  std::array<glm::vec2, kMost> uvs;
-  std::array<FilterPlan, kMost> plans;
-  std::array<glm::vec4, kMost> values;
-  const bool is_kept = texels && texels->are_kept();
+SurfaceShader::FilteredTexture SurfaceShader::filtered_texture(TextureRole role, const Texture& texture) const {
   const int taps = rules_.colors == SurfaceColors::by_pixel ? 0 : rules_.texture_taps;
+  const ColorSpace space = space_of(role);
+  return {role, filtered_by(texture, taps), space, textures_->chain(texture.image, space), taps};
+}
+
+FilterPlan SurfaceShader::FilteredTexture::plan(const TextureSlopes& slopes, float lod) const {
+  return taps > 0 ? footprint_plan(chain, texture, slopes, taps) : filter_plan(chain, texture, slopes, lod);
+}
+
+std::array<float, 4> SurfaceShader::FilteredTexture::texel(const glm::vec4& value, const FilterPlan& plan) const {
+  return {value.r, value.g, value.b, role != TextureRole::normal ? value.a : plan.is_minified ? 1.0f : 0.0f};
+}
+
+void SurfaceShader::find_input(const Invocation& invocation, TexelRequests* texels, PointInputs<float>* inputs) const {
+  const ShaderInputs shader = inputs_of(invocation.triangle);
+  std::array<TexturePlace<float>, 2> places;
+  with_point(triangles_, point_rules(), invocation, [&](const auto& point) {
+    if (inputs) point.set_inputs(shader, *inputs);
+    for (std::size_t set = 0; set < 2; ++set)
+      if (reads(shader.material, set, is_any)) places[set] = point.place(set);
+  });
+  const bool is_kept = texels && texels->are_kept();
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& given, auto texel) {
-    const Texture texture = filtered_by(given, taps);
-    const ColorSpace space = space_of(role);
-    const MipChain& chain = textures_->chain(texture.image, space);
-    const auto& at = points[texture.uv_set];
-    std::array<float, kMost> lods;
-    for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = squared_footprint(at[i].slopes, chain.levels[0]);
-    for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
-    for (std::size_t i = 0; i < invocations.size(); ++i) {
-      uvs[i] = at[i].uv;
-      plans[i] = taps > 0 ? footprint_plan(chain, texture, at[i].slopes, taps)
-                          : filter_plan(chain, texture, at[i].slopes, lods[i]);
-      if (texels && !is_kept) texels->count(plans[i].texels());
-    }
+    const FilteredTexture texture = filtered_texture(role, given);
+    const TexturePlace<float>& at = places[given.uv_set];
+    const FilterPlan plan = texture.plan(slopes_of(at), level_of_detail(slopes_of(at), texture.chain.levels[0]));
+    if (texels && !is_kept) texels->count(plan.texels());
     if (!inputs && !is_kept) return;
-    if constexpr (kMost == 1) {
-      values[0] = filtered(chain, texture, uvs[0], plans[0], noting(is_kept ? texels : nullptr, texture.image, space));
-    } else {
-      filter_side_by_side(chain, texture, std::span(uvs).first(invocations.size()), plans, values.data());
+    const glm::vec4 value = filtered(texture.chain, texture.texture, vector_of(at.uv), plan,
+                                     noting(is_kept ? texels : nullptr, given.image, texture.space));
+    if (inputs) inputs->*texel = texture.texel(value, plan);
+  });
+}
+
+void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRequests* texels,
+                                PointInputs<PointColumn>* inputs) const {
+  const ShaderInputs shader = inputs_of(invocations[0].triangle);
+  std::array<TexturePoints, 2> points;  // by set of texture coordinates
+  find_points(triangles_, shader, point_rules(), invocations, inputs,
+              {reads(shader.material, 0, is_any) ? &points[0] : nullptr,
+               reads(shader.material, 1, is_any) ? &points[1] : nullptr});
+  for_each_texture<PointColumn>(shader.material, [&](TextureRole role, const Texture& given, auto texel) {
+    const FilteredTexture texture = filtered_texture(role, given);
+    const TexturePoints& at = points[given.uv_set];
+    PointColumn lods;
+    for (std::size_t i = 0; i < invocations.size(); ++i)
+      lods[i] = squared_footprint(slopes_of(at, i), texture.chain.levels[0]);
+    for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
+    std::array<FilterPlan, kMostPoints> plans;
+    for (std::size_t i = 0; i < invocations.size(); ++i) {
+      plans[i] = texture.plan(slopes_of(at, i), lods[i]);
+      if (texels) texels->count(plans[i].texels());
     }
-    for (std::size_t i = 0; inputs && i < invocations.size(); ++i) {
-      const glm::vec4& value = values[i];
-      const float last = role != TextureRole::normal ? value.a : plans[i].is_minified ? 1.0f : 0.0f;
-      inputs[i].*texel = {value.r, value.g, value.b, last};
-    }
+    if (!inputs) return;
+    std::array<glm::vec2, kMostPoints> uvs;
+    std::array<glm::vec4, kMostPoints> values;
+    for (std::size_t i = 0; i < invocations.size(); ++i) uvs[i] = uv_of(at, i);
+    filter_side_by_side(texture.chain, texture.texture, std::span(uvs).first(invocations.size()), plans, values.data());
+    for (std::size_t i = 0; i < invocations.size(); ++i) set_row(inputs->*texel, i, texture.texel(values[i], plans[i]));
   });
 }
 
@@ -877,7 +853,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
     return with_limited_alpha(run_program(program_place({triangle, place, footprint}, true), texels));
   const Invocation invocation{triangle, place, footprint};
   PointInputs<float> inputs;
-  find_inputs<1>({&invocation, 1}, texels, &inputs);
+  find_input(invocation, texels, &inputs);
   SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
   const Material& material = this->material(triangle);
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
@@ -891,12 +867,11 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
 
 std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
   std::vector<glm::vec3> colors(invocations.size());
-  std::array<PointInputs<float>, kMostInvocations> inputs;
-  std::array<glm::vec3, kMostInvocations> lit;
+  PointInputs<PointColumn> inputs;
+  std::array<glm::vec3, kMostPoints> lit;
   Batches batches(*this, [&](const Batch& batch) {
-    find_inputs<kMostInvocations>(batch.invocations, texels, inputs.data());
-    lit_colors(inputs_of(batch.invocations[0].triangle), frame_.lighting, inputs.data(), batch.places.size(),
-               lit.data());
+    find_inputs(batch.invocations, texels, &inputs);
+    lit_colors(inputs_of(batch.invocations[0].triangle), frame_.lighting, inputs, batch.places.size(), lit.data());
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       glm::vec3& color = colors[batch.places[i]];
       color = stored_color(lit[i]);
@@ -958,13 +933,11 @@ void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place
     add_program_texels({{triangle, place, footprint}}, texels);
     return;
   }
-  const Invocation invocation{triangle, place, footprint};
-  find_inputs<1>({&invocation, 1}, &texels, nullptr);
+  find_input({triangle, place, footprint}, &texels, nullptr);
 }
 
 void SurfaceShader::count_texels(const std::vector<Invocation>& invocations, TexelRequests& texels) const {
-  Batches batches(*this,
-                  [&](const Batch& batch) { find_inputs<kMostInvocations>(batch.invocations, &texels, nullptr); });
+  Batches batches(*this, [&](const Batch& batch) { find_inputs(batch.invocations, &texels, nullptr); });
   for (const Invocation& invocation : invocations)
     if (!is_flat(invocation.triangle)) batches.add(invocation, 0);
   batches.finish();

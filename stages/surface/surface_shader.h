@@ -17,38 +17,17 @@
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 #include "stages/surface/fragment_verdict.h"
+#include "stages/surface/invocation.h"
 #include "stages/surface/opacity.h"
 #include "stages/surface/program_shader.h"
 #include "stages/surface/surface_formulas.h"
+#include "stages/surface/surface_points.h"
 #include "stages/surface/texel_requests.h"
 #include "stages/surface/texture_filter.h"
 #include "stages/surface/texture_set.h"
 #include "traces/trace.h"
 
 namespace beampipe {
-
-// The part of a pixel that a colour stands for, as a parallelogram: its sides are (xx, xy) and (0, yy), in pixels to
-// the right and down.
-struct Footprint {
-  float xx = 1, xy = 0, yy = 1;
-
-  Footprint() = default;
-  Footprint(float side) : xx(side), yy(side) {}  // a square
-  Footprint(float right, float down, float height) : xx(right), xy(down), yy(height) {}
-};
-
-// A point in a pixel of the frame.
-struct ShadingPlace {
-  std::int32_t x = 0, y = 0;  // the pixel
-  float u = 0.5f, v = 0.5f;   // in it: from its upper left corner, 0..1
-};
-
-// One call of a fragment shader.
-struct Invocation {
-  std::uint32_t triangle;
-  ShadingPlace place;
-  Footprint footprint{};
-};
 
 // How a shader knows what part of a texture a pixel covers: from the planes of its own triangle, or as the difference
 // between the pixels of its 2x2 quad, which helper invocations shade. Textures of materials are filtered for the
@@ -237,13 +216,6 @@ class SurfaceShader {
   }
 
  private:
-  // Where an invocation reads a texture, and how that changes over the area that its colour stands for. Not set at
-  // first.
-  struct TexturePoint {
-    glm::vec2 uv;
-    TextureSlopes slopes;
-  };
-
   struct Batch;
   template <class Run>
   class Batches;
@@ -277,19 +249,38 @@ class SurfaceShader {
   // As the frame's target has it.
   glm::vec3 stored_color(const glm::vec3& linear) const;
 
-  struct Point;
-  Point point_at(std::uint32_t triangle, const ShadingPlace& place) const;
-  // What the shader knows of a point of a triangle without its textures.
-  void set_inputs(std::uint32_t triangle, const Point& point, const ShaderInputs& shader,
-                  PointInputs<float>& inputs) const;
-  // Where an invocation, whose point is given, reads textures that have this set of coordinates.
-  TexturePoint texture_point(const Invocation& invocation, const Point& point, std::size_t set) const;
-  // What the shader knows of several points, with textures. `invocations`: of one shader, at least one and at most
-  // kMost, which is one if texel requests are kept. `inputs`: one each, or null: only texels are noted.
-  template <std::size_t kMost>
-  void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels, PointInputs<float>* inputs) const;
-  // What light_range() of an invocation depends on; its shader is `shader`.
-  AreaInputs<float> area_inputs(const Invocation& invocation, const ShaderInputs& shader, TexelRequests* texels) const;
+  PointRules point_rules() const {
+    return {.at_centres = rules_.colors == SurfaceColors::by_pixel,
+            .in_quads = rules_.derivatives == Derivatives::quad};
+  }
+  // What the shader knows of a point, with textures. `inputs`: may be null: only texels are noted.
+  void find_input(const Invocation& invocation, TexelRequests* texels, PointInputs<float>* inputs) const;
+  // The same for several points, side by side. `invocations`: of one shader, at least one and at most kMostPoints.
+  // `texels`: of requests that are not kept.
+  void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels,
+                   PointInputs<PointColumn>* inputs) const;
+  // What light_range() depends on; as above.
+  AreaInputs<float> find_area(const Invocation& invocation, TexelRequests* texels) const;
+  void find_areas(std::span<const Invocation> invocations, TexelRequests* texels, AreaInputs<PointColumn>& areas) const;
+  // A texture of a material, with the filter that the rules say.
+  struct FilteredTexture {
+    TextureRole role;
+    Texture texture;
+    ColorSpace space;
+    const MipChain& chain;
+    int taps;  // ShadingRules::texture_taps
+
+    FilterPlan plan(const TextureSlopes& slopes, float lod) const;
+    std::array<float, 4> texel(const glm::vec4& value, const FilterPlan& plan) const;  // as in PointInputs
+  };
+  FilteredTexture filtered_texture(TextureRole role, const Texture& texture) const;
+  // What a texture says of an area.
+  struct AreaTexel {
+    std::array<float, 4> texel{1.0f, 1.0f, 1.0f, 1.0f};
+    float around_of_texels = 0, around_within_texels = 0;  // of normals
+  };
+  AreaTexel area_texel(TextureRole role, const Texture& texture, const Material& material, const glm::vec2& uv,
+                       const TextureSlopes& slopes, TexelRequests* texels) const;
   // May its light vary within an area?
   bool may_vary(std::uint32_t triangle) const {
     return !is_flat(triangle) && !is_program(triangle) && !material(triangle).unlit;
@@ -308,9 +299,6 @@ class SurfaceShader {
     return trace_.materials[triangles_.surfaces[triangle].material];
   }
   const Work& material_work(std::uint32_t triangle) const;
-
-  // So many that lanes are full, and so few that all about them stays in the nearest cache.
-  static constexpr std::size_t kMostInvocations = 64;
 
   const SetupTriangles& triangles_;
   const Trace& trace_;

@@ -188,7 +188,8 @@ TEST(SurfaceFormulas, TangentsAreMadePerpendicular) {
   const ShaderInputs shader{material, false, false, true};
   PointInputs<float> inputs;
   set_attributes(
-      shader, TriangleInputs<float>{{0, 0, 1}, 1, {}, 1}, [&](auto member) { return vertex.*member; }, inputs);
+      shader, TriangleInputs<float>{{0, 0, 1}, 1, {}, 1}, [&](const auto& member_of) { return member_of(vertex); },
+      inputs);
   const auto normal_of = [&](const std::array<float, 4>& texel) {
     inputs.normal_texel = texel;
     const Triple<float> normal = material_of(shader, inputs).reflector.normal;
