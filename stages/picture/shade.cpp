@@ -6,28 +6,48 @@
 namespace beampipe {
 namespace {
 
-void shade_at_centroid(const TileShader& shader, TexelRequests* texels, Fragment& fragment) {
-  fragment.color = fragment.alpha * shader.color(fragment.triangle, fragment.pixel, fragment.centroid_u,
-                                                 fragment.centroid_v, 1.0f, texels);
+Invocation at_centroid(const TileShader& shader, const Fragment& fragment) {
+  return {fragment.triangle, shader.place(fragment.pixel, fragment.centroid_u, fragment.centroid_v), 1.0f};
+}
+
+// Of fragments that are requests of their own, or whose requests are not kept.
+void color(const TileShader& shader, std::vector<Fragment>& fragments, TexelRequests* texels) {
+  if (shader.is_flat()) {
+    for (Fragment& fragment : fragments) fragment.color = fragment.alpha * shader.color(fragment.triangle, 0, 0, 0);
+    return;
+  }
+  std::vector<Invocation> invocations;
+  invocations.reserve(fragments.size());
+  for (const Fragment& fragment : fragments) invocations.push_back(at_centroid(shader, fragment));
+  const std::vector<glm::vec3> colors = shader.colors(invocations, texels);
+  for (std::size_t i = 0; i < fragments.size(); ++i) fragments[i].color = fragments[i].alpha * colors[i];
+}
+
+// Of quads, each of which is a request.
+void color_quads(const TileShader& shader, std::vector<Fragment>& fragments, TexelRequests& texels) {
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    if (starts_quad(fragments, i)) texels.end_request();
+    Fragment& fragment = fragments[i];
+    fragment.color = fragment.alpha * shader.color(fragment.triangle, fragment.pixel, fragment.centroid_u,
+                                                   fragment.centroid_v, 1.0f, &texels);
+  }
+  texels.end_request();
 }
 
 }  // namespace
 
 void shade(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters, TexelRequests* texels) {
-  for (std::size_t i = 0; i < fragments.size(); ++i) {
-    if (starts_quad(fragments, i)) end_request(texels);
-    shade_at_centroid(shader, texels, fragments[i]);
+  if (texels && texels->are_kept()) {
+    color_quads(shader, fragments, *texels);
+  } else {
+    color(shader, fragments, texels);
   }
-  end_request(texels);
   charge(in_quads(shader, fragments, whole_shader), kPairBytes, kColorBytes, counters);
 }
 
 void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters,
                    TexelRequests* texels) {
-  for (Fragment& fragment : fragments) {
-    shade_at_centroid(shader, texels, fragment);
-    end_request(texels);
-  }
+  color(shader, fragments, texels);
   charge(one_by_one(shader, fragments, whole_shader), kPairBytes, kColorBytes, counters);
 }
 
@@ -47,25 +67,31 @@ void shade(const TileShader& shader, const std::vector<SampleFragment>& fragment
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
                    const std::vector<std::uint32_t>& order, std::vector<SampleQuad>& quads, TexelRequests* texels) {
   const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
-  const auto color_at = [&](std::size_t q, std::uint32_t triangle, std::uint8_t location) {
+  const auto invocation = [&](std::size_t q, std::uint32_t triangle, std::uint8_t location) -> Invocation {
     const std::size_t pixel = location / 8u, sample = location % 8u;
     const std::size_t x = q % columns * 2 + pixel % 2, y = q / columns * 2 + pixel / 2;
     const auto index = static_cast<std::uint32_t>(y * static_cast<std::size_t>(tile.width()) + x);
-    const glm::vec3 color = shader.color(triangle, index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
-                                         static_cast<float>(pattern.y[sample]) / kSubpixelUnits, 1.0f, texels);
-    end_request(texels);
-    return color;
+    return {triangle,
+            shader.place(index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
+                         static_cast<float>(pattern.y[sample]) / kSubpixelUnits),
+            1.0f};
   };
   const auto extras = extras_of(quads);
+  std::vector<Invocation> invocations;
+  std::vector<glm::vec3*> results;
   for (const std::size_t item : order) {
     const std::size_t q = item / 4, p = item % 4;
     if (q < quads.size()) {
-      quads[q].color[p] = color_at(q, quads[q].triangle[p], quads[q].location[p]);
+      invocations.push_back(invocation(q, quads[q].triangle[p], quads[q].location[p]));
+      results.push_back(&quads[q].color[p]);
     } else {
       const auto& [quad, extra] = extras[item - 4 * quads.size()];
-      extra->color = color_at(quad, extra->triangle, extra->location);
+      invocations.push_back(invocation(quad, extra->triangle, extra->location));
+      results.push_back(&extra->color);
     }
   }
+  const std::vector<glm::vec3> colors = shader.colors(invocations, texels);
+  for (std::size_t i = 0; i < colors.size(); ++i) *results[i] = colors[i];
 }
 
 void write_gbuffer(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters) {

@@ -62,12 +62,15 @@ void stencil_test(const Tile& tile, StageCounters& counters, Accumulator& accumu
 void accumulate(const std::vector<SampleFragment>& fragments, const TileShader& shader,
                 const std::vector<glm::vec2>& places, const Tile& tile, StageCounters& counters,
                 Accumulator& accumulator) {
+  std::vector<Invocation> invocations;
   for (std::size_t i = 0; i < fragments.size(); ++i) {
-    const std::size_t pixel = pixel_of(fragments[i], tile);
     const glm::vec2 place = places.empty() ? glm::vec2(0.5f) : places[i];
-    const glm::vec3 color = shader.color(fragments[i].triangle, static_cast<std::uint32_t>(pixel), place.x, place.y);
-    add(accumulator, pixel, fragments[i].triangle, color, fragments[i].mask);
+    invocations.push_back({fragments[i].triangle,
+                           shader.place(static_cast<std::uint32_t>(pixel_of(fragments[i], tile)), place.x, place.y)});
   }
+  const std::vector<glm::vec3> colors = shader.colors(invocations);
+  for (std::size_t i = 0; i < fragments.size(); ++i)
+    add(accumulator, pixel_of(fragments[i], tile), fragments[i].triangle, colors[i], fragments[i].mask);
   charge_accumulate(fragments.size(), accumulator, counters);
 }
 

@@ -21,16 +21,25 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
   const CellGrid& grid = sampling.grid;
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;
   const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  const auto pixel_of = [&](const SampleFragment& fragment) {
+    return tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
+  };
+  std::vector<Invocation> invocations;
+  for (std::size_t i = 0; i < fragments.list.size(); ++i)
+    invocations.push_back({fragments.list[i].triangle,
+                           shader.place(static_cast<std::uint32_t>(pixel_of(fragments.list[i])), fragments.places[i].x,
+                                        fragments.places[i].y),
+                           grid.shading_width()});
+  const std::vector<glm::vec4> colors = shader.colors_and_alphas(invocations);
   SampleCounts counts{};
   accesses.clear();
   for (std::size_t i = 0; i < fragments.list.size(); ++i) {
     const SampleFragment& fragment = fragments.list[i];
-    const std::size_t pixel = tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
+    const std::size_t pixel = pixel_of(fragment);
     const std::uint32_t cell = cell_number(fragment, tile, grid);
     const CellPlane<float> plane =
         cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
-    const glm::vec4 color = shader.color_and_alpha(fragment.triangle, static_cast<std::uint32_t>(pixel),
-                                                   fragments.places[i].x, fragments.places[i].y, grid.shading_width());
+    const glm::vec4& color = colors[i];
     SampleAccess access{cell, fragment.triangle, fragment.mask, 0};
     PixelObserver* const observer = observer_at(surface.observers, pixel);
     const std::size_t first = surface.first_observed + cell * samples - pixel * surface.samples_per_pixel;

@@ -23,9 +23,11 @@ HWY_INLINE void map_columns(const Block& block, std::size_t count, Result* resul
 }
 
 void lit_colors_kernel(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<PointColumn>& points,
-                       std::size_t count, glm::vec3* colors) {
+                       std::size_t count, glm::vec4* colors) {
   map_columns<PointInputs<Floats>>(points, count, colors, [&](const PointInputs<Floats>& point) HWY_ATTR {
-    return lit_color(shader.material, material_of(shader, point), lighting);
+    const SurfaceMaterial<Floats> material = material_of(shader, point);
+    const Triple<Floats> color = lit_color(shader.material, material, lighting);
+    return std::array<Floats, 4>{color[0], color[1], color[2], material.alpha};
   });
 }
 
@@ -46,7 +48,7 @@ HWY_EXPORT(lit_colors_kernel);
 HWY_EXPORT(light_ranges_kernel);
 
 void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<PointColumn>& points,
-                std::size_t count, glm::vec3* colors) {
+                std::size_t count, glm::vec4* colors) {
   HWY_DYNAMIC_DISPATCH(lit_colors_kernel)(shader, lighting, points, count, colors);
 }
 

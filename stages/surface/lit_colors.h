@@ -8,10 +8,10 @@
 
 namespace beampipe {
 
-// Sets colors[i] to the light, linear RGB, that point i reflects and emits towards the eye: lit_color of material_of,
-// to the last bit.
+// Sets colors[i] to the light, linear RGB, that point i reflects and emits towards the eye, and the material's alpha:
+// lit_color of material_of, to the last bit.
 void lit_colors(const ShaderInputs& shader, const Lighting& lighting, const PointInputs<PointColumn>& points,
-                std::size_t count, glm::vec3* colors);
+                std::size_t count, glm::vec4* colors);
 
 // Sets ranges[i] to light_range of area i, to the last bit.
 void light_ranges(const ShaderInputs& shader, const Lighting& lighting, const AreaInputs<PointColumn>& areas,

@@ -52,8 +52,8 @@ void set_attributes(const ShaderInputs& shader, const TriangleInputs<Real>& tria
                                        : attribute([](const auto& vertex) -> auto& { return vertex.normal; });
   found.facing = triangle.facing;
   if (!shader.material.normal_texture) return;
-  found.tangent = shader.has_tangents ? attribute([](const auto& vertex) -> auto& { return vertex.tangent; })
-                                      : triangle.tangent;
+  found.tangent =
+      shader.has_tangents ? attribute([](const auto& vertex) -> auto& { return vertex.tangent; }) : triangle.tangent;
   found.tangent_sign = triangle.tangent_sign;
 }
 

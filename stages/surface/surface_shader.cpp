@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <optional>
 
@@ -27,6 +28,15 @@ TextureSlopes slopes_of(const TexturePoints& points, std::size_t i) {
   return {{points.dx[0][i], points.dx[1][i]}, {points.dy[0][i], points.dy[1][i]}};
 }
 glm::vec2 uv_of(const TexturePoints& points, std::size_t i) { return {points.uv[0][i], points.uv[1][i]}; }
+
+// What is known of point i.
+PointInputs<float> row(const PointInputs<PointColumn>& points, std::size_t i) {
+  PointInputs<float> found;
+  for (std::size_t member = 0; member < sizeof found / sizeof(float); ++member)
+    std::memcpy(reinterpret_cast<float*>(&found) + member,
+                reinterpret_cast<const float*>(&points) + member * kMostPoints + i, sizeof(float));
+  return found;
+}
 
 // Sets the member at point i.
 template <std::size_t kCount>
@@ -482,8 +492,7 @@ std::vector<FragmentVerdict> SurfaceShader::verdicts(std::uint32_t triangle, con
     colors.resize(places.size());
     programs_.shade(places, colors.data(), texels, found.data());
   } else {
-    for (const Invocation& invocation : invocations)
-      colors.push_back(shaded(triangle, invocation.place, invocation.footprint, texels));
+    for (const Invocation& invocation : invocations) colors.push_back(shaded(invocation, texels));
   }
   const float least = is_program(triangle) || !is_cutout(triangle) ? 0 : alpha_cutoff(triangle);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -847,46 +856,57 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
   });
 }
 
-glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
-                                TexelRequests* texels) const {
-  if (is_program(triangle))
-    return with_limited_alpha(run_program(program_place({triangle, place, footprint}, true), texels));
-  const Invocation invocation{triangle, place, footprint};
+glm::vec4 SurfaceShader::shaded(const Invocation& invocation, TexelRequests* texels) const {
+  const std::uint32_t triangle = invocation.triangle;
+  if (is_program(triangle)) return with_limited_alpha(run_program(program_place(invocation, true), texels));
   PointInputs<float> inputs;
   find_input(invocation, texels, &inputs);
-  SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
-  const Material& material = this->material(triangle);
-  const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  if (is_stored(material)) found.reflector = through_gbuffer(found.reflector);
-  const Triple<float> lit = lit_color(material, found, frame_.lighting);
-  glm::vec3 color = stored_color({lit[0], lit[1], lit[2]});
-  round_to(rules_.stored_as, color);
-  if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
-  return {color, by_pixel ? alpha(triangle, place, footprint) : limited_alpha(found.alpha)};
+  return lit(invocation, inputs);
 }
 
-std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
-  std::vector<glm::vec3> colors(invocations.size());
+glm::vec4 SurfaceShader::lit(const Invocation& invocation, const PointInputs<float>& inputs) const {
+  const Material& material = this->material(invocation.triangle);
+  SurfaceMaterial<float> found = material_of(inputs_of(invocation.triangle), inputs);
+  if (is_stored(material)) found.reflector = through_gbuffer(found.reflector);
+  const Triple<float> color = lit_color(material, found, frame_.lighting);
+  return as_stored(invocation, {color[0], color[1], color[2], found.alpha});
+}
+
+glm::vec4 SurfaceShader::as_stored(const Invocation& invocation, const glm::vec4& lit) const {
+  const std::uint32_t triangle = invocation.triangle;
+  glm::vec3 color = stored_color(glm::vec3(lit));
+  round_to(rules_.stored_as, color);
+  if (material(triangle).alpha_mode == AlphaMode::opaque) return {color, 1.0f};
+  return {color, rules_.colors == SurfaceColors::by_pixel ? alpha(triangle, invocation.place, invocation.footprint)
+                                                          : limited_alpha(lit.a)};
+}
+
+std::vector<glm::vec4> SurfaceShader::colors_and_alphas(const std::vector<Invocation>& invocations,
+                                                        TexelRequests* texels) const {
+  std::vector<glm::vec4> colors(invocations.size());
   PointInputs<PointColumn> inputs;
-  std::array<glm::vec3, kMostPoints> lit;
+  std::array<glm::vec4, kMostPoints> found;
   Batches batches(*this, [&](const Batch& batch) {
+    const std::size_t count = batch.invocations.size();
+    const std::uint32_t first = batch.invocations[0].triangle;
     find_inputs(batch.invocations, texels, &inputs);
-    lit_colors(inputs_of(batch.invocations[0].triangle), frame_.lighting, inputs, batch.places.size(), lit.data());
-    for (std::size_t i = 0; i < batch.places.size(); ++i) {
-      glm::vec3& color = colors[batch.places[i]];
-      color = stored_color(lit[i]);
-      round_to(rules_.stored_as, color);
+    if (is_stored(material(first))) {
+      for (std::size_t i = 0; i < count; ++i) colors[batch.places[i]] = lit(batch.invocations[i], row(inputs, i));
+      return;
     }
+    lit_colors(inputs_of(first), frame_.lighting, inputs, count, found.data());
+    for (std::size_t i = 0; i < count; ++i) colors[batch.places[i]] = as_stored(batch.invocations[i], found[i]);
   });
   const bool is_kept = texels && texels->are_kept();  // requests are kept in order
   std::vector<std::size_t> of_programs;               // numbers of invocations
   for (std::size_t i = 0; i < invocations.size(); ++i) {
     const Invocation& invocation = invocations[i];
-    const std::uint32_t triangle = invocation.triangle;
-    if (!is_flat(triangle) && is_program(triangle)) {
+    if (is_flat(invocation.triangle)) {
+      colors[i] = glm::vec4(flat_[invocation.triangle], 1.0f);
+    } else if (is_program(invocation.triangle)) {
       of_programs.push_back(i);
-    } else if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
-      colors[i] = color(triangle, invocation.place, invocation.footprint, texels);
+    } else if (is_kept) {
+      colors[i] = shaded(invocation, texels);
       end_request(texels);
     } else {
       batches.add(invocation, i);
@@ -895,33 +915,9 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
   batches.finish();
   for_each_draw(invocations, of_programs,
                 [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>& numbers) {
-                  std::vector<glm::vec4> found(places.size());
-                  run_programs(places, found.data(), texels);
-                  for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = glm::vec3(found[k]);
-                });
-  return colors;
-}
-
-std::vector<glm::vec4> SurfaceShader::colors_and_alphas(const std::vector<Invocation>& invocations,
-                                                        TexelRequests* texels) const {
-  std::vector<glm::vec4> colors(invocations.size());
-  std::vector<std::size_t> of_programs;  // numbers of invocations
-  for (std::size_t i = 0; i < invocations.size(); ++i) {
-    const auto& [triangle, place, footprint] = invocations[i];
-    if (is_flat(triangle)) {
-      colors[i] = glm::vec4(flat_[triangle], 1.0f);
-    } else if (is_program(triangle)) {
-      of_programs.push_back(i);
-    } else {
-      colors[i] = shaded(triangle, place, footprint, texels);
-      end_request(texels);
-    }
-  }
-  for_each_draw(invocations, of_programs,
-                [&](const std::vector<ProgramPlace>& places, const std::vector<std::size_t>& numbers) {
-                  std::vector<glm::vec4> found(places.size());
-                  run_programs(places, found.data(), texels);
-                  for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = with_limited_alpha(found[k]);
+                  std::vector<glm::vec4> of_draw(places.size());
+                  run_programs(places, of_draw.data(), texels);
+                  for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = with_limited_alpha(of_draw[k]);
                 });
   return colors;
 }

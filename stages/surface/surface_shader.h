@@ -77,18 +77,16 @@ class SurfaceShader {
   glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {},
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return glm::vec3(shaded(triangle, place, footprint, texels));
+    return glm::vec3(shaded({triangle, place, footprint}, texels));
   }
 
-  // The same for several invocations, side by side, which takes less time. Each is a request of its own.
-  std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const;
-
-  // The same with alpha, which is 1 for flat triangles.
+  // The same for several invocations, side by side, which takes less time; with alpha, which is 1 for flat triangles.
+  // Each is a request of its own.
   std::vector<glm::vec4> colors_and_alphas(const std::vector<Invocation>& invocations,
                                            TexelRequests* texels = nullptr) const;
   glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
-    return shaded(triangle, place, footprint, nullptr);
+    return shaded({triangle, place, footprint}, nullptr);
   }
 
   // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
@@ -220,8 +218,11 @@ class SurfaceShader {
   template <class Run>
   class Batches;
 
-  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint,
-                   TexelRequests* texels) const;
+  // Color and alpha of one invocation; of its inputs, whose material is no program; and of the light that it reflects,
+  // with the material's alpha.
+  glm::vec4 shaded(const Invocation& invocation, TexelRequests* texels) const;
+  glm::vec4 lit(const Invocation& invocation, const PointInputs<float>& inputs) const;
+  glm::vec4 as_stored(const Invocation& invocation, const glm::vec4& lit) const;
 
   std::uint32_t draw(std::uint32_t triangle) const { return triangles_.draws[triangle]; }
   // Where shaders say that there is a surface everywhere, nobody asks them.
@@ -332,13 +333,18 @@ class TileShader {
     if (is_flat(triangle)) return flat_[triangle];
     return shader_->color(triangle, place(pixel, u, v), footprint, texels);
   }
-  // Of triangles that are not flat.
-  std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
-    return shader_->colors(invocations, texels);
-  }
   std::vector<glm::vec4> colors_and_alphas(const std::vector<Invocation>& invocations,
                                            TexelRequests* texels = nullptr) const {
-    return shader_->colors_and_alphas(invocations, texels);
+    if (shader_) return shader_->colors_and_alphas(invocations, texels);
+    std::vector<glm::vec4> colors;
+    for (const Invocation& invocation : invocations) colors.emplace_back(flat_[invocation.triangle], 1.0f);
+    return colors;
+  }
+  std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
+    std::vector<glm::vec3> colors;
+    colors.reserve(invocations.size());
+    for (const glm::vec4& color : colors_and_alphas(invocations, texels)) colors.emplace_back(color);
+    return colors;
   }
   glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v,
                             const Footprint& footprint = {}) const {
@@ -401,7 +407,9 @@ class TileShader {
     return {shader_->sheet(triangle), at.x, at.y, static_cast<std::uint32_t>(positions)};
   }
 
+  // Flat triangles that belong to no tile look the same everywhere.
   ShadingPlace place(std::uint32_t pixel, float u, float v) const {
+    if (!shader_) return {};
     const std::uint32_t row = pixel / static_cast<std::uint32_t>(tile_.width());
     return {tile_.x0 + static_cast<std::int32_t>(pixel - row * static_cast<std::uint32_t>(tile_.width())),
             tile_.y0 + static_cast<std::int32_t>(row), u, v};
