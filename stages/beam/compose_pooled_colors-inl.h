@@ -33,7 +33,8 @@ class OwnerColors {
 
   // Are there colours for shade_together()? If requests for texels are kept, their order matters.
   bool are_shaded_together() const {
-    return !bin_.shader.is_flat() && (is_adaptive() || bin_.shading.at == OwnerPlace::covered) &&
+    const OwnerPlace at = bin_.shading.at;
+    return !bin_.shader.is_flat() && at != OwnerPlace::quarters && at != OwnerPlace::sixteenths &&
            !(result_.texels && result_.texels->are_kept());
   }
 
@@ -68,8 +69,10 @@ class OwnerColors {
       shade_adaptively(owners);
     } else {
       std::vector<Invocation> invocations;
-      for (const WaitingOwner& owner : owners)
-        invocations.push_back({owner.triangle, bin_.shader.place(owner.pixel, owner.at.x, owner.at.y)});
+      for (const WaitingOwner& owner : owners) {
+        const glm::vec2 at = bin_.shading.at == OwnerPlace::visible ? mean_of(Mask(owner.owned)) : owner.at;
+        invocations.push_back({owner.triangle, bin_.shader.place(owner.pixel, at.x, at.y)});
+      }
       for (const glm::vec3& color : bin_.shader.colors(invocations, result_.texels)) shaded_.push_back({color, 1});
     }
   }
@@ -138,11 +141,15 @@ class OwnerColors {
   }
 
   glm::vec3 shade_at_mean(std::uint32_t pixel, std::uint32_t triangle, const Mask& positions, float width) {
+    return shade(pixel, triangle, mean_of(positions), width);
+  }
+
+  glm::vec2 mean_of(const Mask& positions) {
     ++work_.measured;
     const WideMask words = positions.wide();
     const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, words.words.data());
     const auto count = static_cast<float>(positions.count());
-    return shade(pixel, triangle, {mean_position(sums.x, count), mean_position(sums.y, count)}, width);
+    return {mean_position(sums.x, count), mean_position(sums.y, count)};
   }
 
   // What is owned of an area: its mean position, and the footprint of its positions.
@@ -234,6 +241,11 @@ class OwnerColors {
     std::vector<Area> areas;
     std::vector<Invocation> invocations;
     std::vector<float> ranges;
+
+    void reserve(std::size_t count) {
+      areas.reserve(count);
+      invocations.reserve(count);
+    }
   };
   void add(const WaitingOwner& owner, const Area& area, Areas& areas) {
     areas.areas.push_back(area);
@@ -248,6 +260,7 @@ class OwnerColors {
   // The same for all at once: first all pixels, then all quarters, then all that is to be shaded.
   void shade_adaptively(const std::vector<WaitingOwner>& owners) {
     Areas wholes, quarters, pieces;
+    for (Areas* const areas : {&wholes, &pieces}) areas->reserve(owners.size());
     for (const WaitingOwner& owner : owners) add(owner, whole_of(Mask(owner.owned)), wholes);
     find_ranges(wholes);
     const auto is_halved = [&](std::size_t i) { return varies(wholes.areas[i], wholes.ranges[i]); };

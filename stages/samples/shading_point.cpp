@@ -26,12 +26,14 @@ ShadingPoint shading_point(const SetupTriangle& triangle, const SampleFragment& 
   if (at == ShadeAt::sample)
     return {glm::dvec2(left + sampling.pattern.x[0], top + sampling.pattern.y[0]) / double{kSubpixelUnits}, true};
   const std::int64_t x = left + sampling.grid.cell_width() / 2, y = top + sampling.grid.cell_height() / 2;
+  const ShadingPoint centre{glm::dvec2(x, y) / double{kSubpixelUnits}, true};
+  if (at == ShadeAt::centre) return centre;
   bool covered = true;
   for (int k = 0; k < 3; ++k) {
     const Edge edge = edge_of(triangle, k);
     covered &= is_inside<std::int64_t>({edge.a, edge.b, edge.c}, x, y, edge.owns ? 0 : 1);
   }
-  if (covered || at == ShadeAt::centre) return {glm::dvec2(x, y) / double{kSubpixelUnits}, true};
+  if (covered) return centre;
 
   std::uint32_t bits[kMaxMaskSamples];
   float xs[kMaxMaskSamples], ys[kMaxMaskSamples];

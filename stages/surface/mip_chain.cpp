@@ -95,10 +95,6 @@ std::uint8_t srgb_code(float linear) {
   return static_cast<std::uint8_t>(std::upper_bound(limits.begin(), limits.end(), linear) - limits.begin());
 }
 
-glm::vec4 MipChain::texel(std::size_t level, std::uint32_t x, std::uint32_t y) const {
-  return texel_values(space)(levels[level].texel(x, y));
-}
-
 MipChain make_mip_chain(const TextureImage& image, ColorSpace space) {
   MipChain chain{space, {{image.width, image.height, image.texels}}};
   std::vector<glm::vec4> values;

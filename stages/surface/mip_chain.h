@@ -38,9 +38,6 @@ struct MipLevel {
 struct MipChain {
   ColorSpace space = ColorSpace::linear;
   std::vector<MipLevel> levels;
-
-  // Linear RGBA.
-  glm::vec4 texel(std::size_t level, std::uint32_t x, std::uint32_t y) const;
 };
 
 MipChain make_mip_chain(const TextureImage& image, ColorSpace space);

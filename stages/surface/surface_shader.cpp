@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <new>
 #include <optional>
 
 #include "stages/cost/counting.h"
@@ -613,13 +614,7 @@ class SurfaceShader::Batches {
   Batches(const SurfaceShader& shader, Run run) : shader_(shader), run_(std::move(run)) {}
 
   void add(const Invocation& invocation, std::size_t place) {
-    const std::uint32_t triangle = invocation.triangle;
-    const std::size_t work = work_index(shader_.triangles_.surfaces[triangle].material, shader_.inputs_of(triangle));
-    if (current_ >= batches_.size() || batches_[current_].work != work) {
-      current_ = 0;
-      while (current_ < batches_.size() && batches_[current_].work != work) ++current_;
-      if (current_ == batches_.size()) batches_.push_back({work, {}, {}});
-    }
+    if (invocation.triangle != last_triangle_) find_batch(invocation.triangle);
     Batch& batch = batches_[current_];
     batch.invocations.push_back(invocation);
     batch.places.push_back(place);
@@ -633,6 +628,15 @@ class SurfaceShader::Batches {
   }
 
  private:
+  void find_batch(std::uint32_t triangle) {
+    last_triangle_ = triangle;
+    const std::size_t work = work_index(shader_.triangles_.surfaces[triangle].material, shader_.inputs_of(triangle));
+    if (current_ < batches_.size() && batches_[current_].work == work) return;
+    current_ = 0;
+    while (current_ < batches_.size() && batches_[current_].work != work) ++current_;
+    if (current_ == batches_.size()) batches_.push_back({work, {}, {}});
+  }
+
   void finish(Batch& batch) {
     run_(batch);
     batch.invocations.clear();
@@ -642,7 +646,8 @@ class SurfaceShader::Batches {
   const SurfaceShader& shader_;
   Run run_;
   std::vector<Batch> batches_;
-  std::size_t current_ = 0;  // most invocations have the shader of the one before
+  std::size_t current_ = 0;  // most invocations have the triangle or the shader of the one before
+  std::uint32_t last_triangle_ = ~0u;
 };
 
 SurfaceShader::AreaTexel SurfaceShader::area_texel(TextureRole role, const Texture& texture, const Material& material,
@@ -842,12 +847,17 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
     for (std::size_t i = 0; i < invocations.size(); ++i)
       lods[i] = squared_footprint(slopes_of(at, i), texture.chain.levels[0]);
     for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
+    if (!inputs) {
+      for (std::size_t i = 0; i < invocations.size(); ++i)
+        texels->count(texture.plan(slopes_of(at, i), lods[i]).texels());
+      return;
+    }
     std::array<FilterPlan, kMostPoints> plans;
     for (std::size_t i = 0; i < invocations.size(); ++i) {
-      plans[i] = texture.plan(slopes_of(at, i), lods[i]);
+      // Made where it stays: a copy of what was just written in parts would wait for them.
+      ::new (&plans[i]) FilterPlan(texture.plan(slopes_of(at, i), lods[i]));
       if (texels) texels->count(plans[i].texels());
     }
-    if (!inputs) return;
     std::array<glm::vec2, kMostPoints> uvs;
     std::array<glm::vec4, kMostPoints> values;
     for (std::size_t i = 0; i < invocations.size(); ++i) uvs[i] = uv_of(at, i);

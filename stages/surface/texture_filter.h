@@ -149,6 +149,7 @@ template <class Read>
 TexelQuad texels_around(const MipChain& chain, const Texture& texture, std::size_t level, const glm::vec2& uv,
                         Read&& read) {
   const MipLevel& image = chain.levels[level];
+  const TexelValues& values = texel_values(chain.space);
   TexelQuad quad;
   quad.columns = texels_at(uv.x, image.width, texture.wrap_u);
   quad.rows = texels_at(uv.y, image.height, texture.wrap_v);
@@ -156,7 +157,7 @@ TexelQuad texels_around(const MipChain& chain, const Texture& texture, std::size
   for (const std::uint32_t row : {quad.rows.first, quad.rows.second})
     for (const std::uint32_t column : {quad.columns.first, quad.columns.second}) {
       read(level, column, row);
-      quad.texels[i++] = chain.texel(level, column, row);
+      quad.texels[i++] = values(image.texel(column, row));
     }
   return quad;
 }

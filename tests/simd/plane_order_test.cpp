@@ -50,6 +50,7 @@ TEST(PlaneOrder, EqualsIntegerArithmetic) {
       const IntegerPlane plane{random.integer(-1024, 0), slope(), slope()};
       IntegerPlane other{random.integer(-1024, 0), slope(), slope()};
       if (random.one_in(3)) other = {plane.z, plane.dzdv, plane.dzdu};  // they meet along a diagonal
+      if (random.one_in(10)) other = plane;
       std::uint32_t masks[8];
       nearer_positions(plane.plane(), other.plane(), offsets_of(patterns).data(), patterns.size(), masks);
       for (std::size_t p = 0; p < 256; ++p) {

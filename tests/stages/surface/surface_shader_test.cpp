@@ -440,7 +440,7 @@ TEST(SurfaceShader, SideBySideColorsAreTheSame) {
     }
     on_every_target([&] {
       TexelRequests of_colors(nullptr), of_ranges(nullptr), counted(nullptr);
-      const std::vector<glm::vec3> colors = scene.shader.colors(invocations, &of_colors);
+      const std::vector<glm::vec4> colors = scene.shader.colors_and_alphas(invocations, &of_colors);
       const std::vector<float> ranges = scene.shader.light_ranges(invocations, &of_ranges);
       scene.shader.count_texels(invocations, counted);
       EXPECT_EQ(of_colors.texels(), texels);
@@ -450,8 +450,8 @@ TEST(SurfaceShader, SideBySideColorsAreTheSame) {
       TexelRequests of_range(nullptr);
       for (std::size_t i = 0; i < colors.size(); ++i) {
         const auto& [triangle, place, footprint] = invocations[i];
-        const glm::vec3 expected = scene.shader.color(triangle, place, footprint);
-        for (int c = 0; c < 3; ++c)
+        const glm::vec4 expected = scene.shader.color_and_alpha(triangle, place, footprint);
+        for (int c = 0; c < 4; ++c)
           ASSERT_EQ(std::bit_cast<std::uint32_t>(colors[i][c]), std::bit_cast<std::uint32_t>(expected[c]))
               << i << ", triangle " << triangle << ": " << colors[i][c] << " and " << expected[c];
         const float range = scene.shader.light_range(triangle, place, footprint, &of_range);
@@ -459,7 +459,7 @@ TEST(SurfaceShader, SideBySideColorsAreTheSame) {
       }
       EXPECT_EQ(of_ranges.texels(), of_range.texels());
     });
-    EXPECT_TRUE(scene.shader.colors({}).empty());
+    EXPECT_TRUE(scene.shader.colors_and_alphas({}).empty());
     EXPECT_TRUE(scene.shader.light_ranges({}).empty());
   }
 }

@@ -5,6 +5,7 @@
 #include "stages/surface/texture_set.h"
 #include "tests/message_of.h"
 #include "tests/simd/random.h"
+#include "tests/stages/surface/color_of_texel.h"
 #include "tests/stages/surface_scene.h"
 
 namespace beampipe::tested_alpha_test {
@@ -38,7 +39,7 @@ TEST(TestedAlpha, SharesAreThoseOfManyPoints) {
                                  (static_cast<float>(y) + (i / kPoints + 0.5f) / kPoints) / 3);
               passed += filtered_level(chain, texture, 0, uv, filter, [](std::size_t, auto, auto) {}).a >= needed;
             }
-            EXPECT_NEAR(tested.share(tested.shares.texel(0, x, y), needed),
+            EXPECT_NEAR(tested.share(color_of_texel(tested.shares, 0, x, y), needed),
                         passed / static_cast<double>(kPoints * kPoints), filter == Filter::nearest ? 1e-4 : 0.06)
                 << x << ", " << y << ": " << needed;
           }
@@ -53,7 +54,7 @@ TEST(TestedAlpha, LevelsAreMeansOfShares) {
   double passed = 0;
   for (const glm::u8vec4& texel : image.texels) passed += texel.a >= 128;
   ASSERT_EQ(shares.levels.size(), 4u);
-  EXPECT_NEAR(shares.texel(3, 0, 0)[0], passed / 64, 1 / 255.0);
+  EXPECT_NEAR(color_of_texel(shares, 3, 0, 0)[0], passed / 64, 1 / 255.0);
 }
 
 // Between its values a share is interpolated; above all of them there is nothing.
