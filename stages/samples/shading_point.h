@@ -20,6 +20,12 @@ enum class ShadeAt {
 // The samples of the fragment's cell that the triangle covers, whatever the fragment's mask says.
 std::uint32_t covered_samples(const SetupTriangle& triangle, const SampleFragment& fragment, const Sampling& sampling);
 
+// Of a cell, in its pixel: 0..1.
+inline glm::vec2 middle_in_pixel(const CellGrid& grid, std::int32_t x, std::int32_t y) {
+  return {(static_cast<float>(x & (grid.columns - 1)) + 0.5f) / static_cast<float>(grid.columns),
+          (static_cast<float>(y & (grid.rows - 1)) + 0.5f) / static_cast<float>(grid.rows)};
+}
+
 struct ShadingPoint {
   glm::dvec2 position;  // pixels, frame coordinates
   bool is_centre;

@@ -55,6 +55,12 @@ Invocation below(Invocation middle) {
   return middle;
 }
 
+// A shader that needs nothing but the normal and the direction to the eye, from the same triangles.
+ShaderInputs directions_alone(const ShaderInputs& shader) {
+  static const Material lit{};
+  return {lit, false, shader.has_own_normal, false};
+}
+
 // Textures that matter to light_range().
 bool is_of_area(TextureRole role) { return role == TextureRole::normal || role == TextureRole::metallic_roughness; }
 bool is_any(TextureRole) { return true; }
@@ -685,7 +691,8 @@ AreaInputs<float> SurfaceShader::find_area(const Invocation& invocation, TexelRe
   });
   const auto beside = [&](const Invocation& there, Triple<float>& to_eye, Triple<float>& normal) {
     PointInputs<float> inputs{};
-    with_point(triangles_, point_rules(), there, [&](const auto& point) { point.set_inputs(shader, inputs); });
+    with_point(triangles_, point_rules(), there,
+               [&](const auto& point) { point.set_inputs(directions_alone(shader), inputs); });
     to_eye = inputs.to_eye, normal = inputs.normal;
   };
   beside(right_of(invocation), area.right_to_eye, area.right_normal);
@@ -711,7 +718,8 @@ void SurfaceShader::find_areas(std::span<const Invocation> invocations, TexelReq
   const auto beside = [&](auto there, std::array<PointColumn, 3>& to_eye, std::array<PointColumn, 3>& normal) {
     std::array<Invocation, kMostPoints> moved;
     for (std::size_t i = 0; i < invocations.size(); ++i) moved[i] = there(invocations[i]);
-    find_points(triangles_, shader, point_rules(), std::span(moved).first(invocations.size()), &inputs, {});
+    find_points(triangles_, directions_alone(shader), point_rules(), std::span(moved).first(invocations.size()),
+                &inputs, {});
     to_eye = inputs.to_eye, normal = inputs.normal;
   };
   beside(right_of, areas.right_to_eye, areas.right_normal);
