@@ -63,6 +63,14 @@ struct SetupTriangles {
     attributes.reserve(count);
     draws.reserve(count);
   }
+  // Triangles alone.
+  void clear() {
+    triangles.clear();
+    attributes.clear();
+    draws.clear();
+    surfaces.clear();
+    trace_triangles.clear();
+  }
 };
 
 // Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c, with x and y in 1/256 px. E >= 0 inside. `owns` is the

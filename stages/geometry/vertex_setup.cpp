@@ -560,7 +560,7 @@ void append(const SetupTriangles& part, SetupTriangles& whole) {
   whole.trace_triangles.insert(whole.trace_triangles.end(), part.trace_triangles.begin(), part.trace_triangles.end());
 }
 
-constexpr std::size_t kChunk = 4096;  // vertices or triangles per task
+constexpr std::size_t kChunk = 1024;  // vertices or triangles per task
 
 std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
@@ -594,14 +594,25 @@ SetupWork add_draw(const DrawJob& job, SetupTriangles& out) {
     work += set_up(0, mesh.triangles.size(), out);
     return work;
   }
-  std::vector<SetupTriangles> parts(chunks_of(mesh.triangles.size()));
+  // Parts are appended before they leave the caches, and their memory is used again: new pages would take longer than
+  // the triangles in them.
+  const std::size_t count = mesh.triangles.size(), chunks = chunks_of(count);
+  const std::size_t at_once = 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  std::vector<SetupTriangles> parts(std::min(at_once, chunks));
   std::vector<SetupWork> part_work(parts.size());
-  for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
-    parts[first / kChunk].reserve(end - first);
-    part_work[first / kChunk] = set_up(first, end, parts[first / kChunk]);
-  });
-  for (const SetupTriangles& part : parts) append(part, out);
-  for (const SetupWork& of_part : part_work) work += of_part;
+  for (std::size_t first = 0; first < chunks; first += at_once) {
+    const std::size_t end = std::min(first + at_once, chunks);
+    tbb::parallel_for(first, end, [&](std::size_t chunk) {
+      SetupTriangles& part = parts[chunk - first];
+      part.clear();
+      part.reserve(kChunk);
+      part_work[chunk - first] = set_up(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), part);
+    });
+    for (std::size_t i = 0; i < end - first; ++i) {
+      append(parts[i], out);
+      work += part_work[i];
+    }
+  }
   return work;
 }
 

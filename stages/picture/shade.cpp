@@ -19,8 +19,8 @@ void color(const TileShader& shader, std::vector<Fragment>& fragments, TexelRequ
   std::vector<Invocation> invocations;
   invocations.reserve(fragments.size());
   for (const Fragment& fragment : fragments) invocations.push_back(at_centroid(shader, fragment));
-  const std::vector<glm::vec3> colors = shader.colors(invocations, texels);
-  for (std::size_t i = 0; i < fragments.size(); ++i) fragments[i].color = fragments[i].alpha * colors[i];
+  const std::vector<glm::vec4> colors = shader.colors_alone(invocations, texels);
+  for (std::size_t i = 0; i < fragments.size(); ++i) fragments[i].color = fragments[i].alpha * glm::vec3(colors[i]);
 }
 
 // Of quads, each of which is a request.
@@ -90,8 +90,8 @@ void color_samples(const TileShader& shader, const Tile& tile, const SamplePatte
       results.push_back(&extra->color);
     }
   }
-  const std::vector<glm::vec3> colors = shader.colors(invocations, texels);
-  for (std::size_t i = 0; i < colors.size(); ++i) *results[i] = colors[i];
+  const std::vector<glm::vec4> colors = shader.colors_alone(invocations, texels);
+  for (std::size_t i = 0; i < colors.size(); ++i) *results[i] = glm::vec3(colors[i]);
 }
 
 void write_gbuffer(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters) {

@@ -68,9 +68,9 @@ void accumulate(const std::vector<SampleFragment>& fragments, const TileShader& 
     invocations.push_back({fragments[i].triangle,
                            shader.place(static_cast<std::uint32_t>(pixel_of(fragments[i], tile)), place.x, place.y)});
   }
-  const std::vector<glm::vec3> colors = shader.colors(invocations);
+  const std::vector<glm::vec4> colors = shader.colors_alone(invocations);
   for (std::size_t i = 0; i < fragments.size(); ++i)
-    add(accumulator, pixel_of(fragments[i], tile), fragments[i].triangle, colors[i], fragments[i].mask);
+    add(accumulator, pixel_of(fragments[i], tile), fragments[i].triangle, glm::vec3(colors[i]), fragments[i].mask);
   charge_accumulate(fragments.size(), accumulator, counters);
 }
 

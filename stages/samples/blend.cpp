@@ -30,7 +30,7 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
                            shader.place(static_cast<std::uint32_t>(pixel_of(fragments.list[i])), fragments.places[i].x,
                                         fragments.places[i].y),
                            grid.shading_width()});
-  const std::vector<glm::vec4> colors = shader.colors_and_alphas(invocations);
+  const std::vector<glm::vec4> colors = shader.colors_alone(invocations);
   SampleCounts counts{};
   accesses.clear();
   for (std::size_t i = 0; i < fragments.list.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "simd/sample_pattern.h"
 #include "stages/surface/program_alpha.h"
 #include "stages/surface/surface_formulas.h"
+#include "stages/surface/surface_points.h"
 
 namespace beampipe {
 namespace {
@@ -42,11 +43,6 @@ SquarePlace square_of(const ProgramPlace& place) {
 
 std::size_t lane_in_quad(const SquarePlace& square) {
   return static_cast<std::size_t>((square.column & 1) + 2 * (square.row & 1));
-}
-
-Barycentrics<float> into_triangle(const Barycentrics<float>& weights) {
-  const float second = std::clamp(weights.second, 0.0f, 1.0f);
-  return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
 }
 
 }  // namespace
@@ -147,7 +143,7 @@ void ProgramShader::set_inputs(const BoundDraw& draw, const ProgramPlace& place,
   };
   const Barycentrics<float> at_place =
       weights_of(surface, static_cast<float>(place.x) + place.u, static_cast<float>(place.y) + place.v);
-  const Barycentrics<float> kept = place.stays_in_triangle ? into_triangle(at_place) : at_place;
+  const Barycentrics<float> kept = place.stays_in_triangle ? limited_to_triangle(at_place) : at_place;
   for (const Lane& lane : lanes) {
     Barycentrics<float> smooth = weights_of(surface, lane.x, lane.y);
     smooth.second += kept.second - at_place.second, smooth.third += kept.third - at_place.third;

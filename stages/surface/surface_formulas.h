@@ -1,5 +1,5 @@
-// The fragment shader of materials, for numbers, for numbers that count (stages/cost/counting.h) and, where it does not
-// depend on the triangle, for vectors with a point in each lane.
+// The fragment shader of materials, for numbers, for numbers that count (stages/cost/counting.h) and for vectors with a
+// point in each lane.
 //
 // Source: Khronos Group, glTF 2.0 Specification, appendix B (BRDF implementation): Lambert's diffuse and GGX specular
 // reflection, Schlick's Fresnel term, the separable form of Smith's visibility. Everything is multiplied by pi, as

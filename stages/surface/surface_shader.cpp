@@ -659,7 +659,6 @@ class SurfaceShader::Batches {
 SurfaceShader::AreaTexel SurfaceShader::area_texel(TextureRole role, const Texture& texture, const Material& material,
                                                    const glm::vec2& uv, const TextureSlopes& slopes,
                                                    TexelRequests* texels) const {
-  if (!is_of_area(role)) return {};
   const ColorSpace space = space_of(role);
   const MipChain& chain = textures_->chain(texture.image, space);
   const CoveringLevel covering = covering_level(chain, slopes);
@@ -699,7 +698,9 @@ AreaInputs<float> SurfaceShader::find_area(const Invocation& invocation, TexelRe
   beside(below(invocation), area.below_to_eye, area.below_normal);
   for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
     const TexturePlace<float>& at = places[texture.uv_set];
-    const AreaTexel found = area_texel(role, texture, shader.material, vector_of(at.uv), slopes_of(at), texels);
+    const AreaTexel found = is_of_area(role)
+                                ? area_texel(role, texture, shader.material, vector_of(at.uv), slopes_of(at), texels)
+                                : AreaTexel{};
     area.middle.*texel = found.texel;
     if (role == TextureRole::normal)
       area.around_of_texels = found.around_of_texels, area.around_within_texels = found.around_within_texels;
@@ -727,6 +728,10 @@ void SurfaceShader::find_areas(std::span<const Invocation> invocations, TexelReq
   areas.around_of_texels.fill(0.0f), areas.around_within_texels.fill(0.0f);
   for_each_texture<PointColumn>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
     const TexturePoints& at = points[texture.uv_set];
+    if (!is_of_area(role)) {
+      for (PointColumn& column : areas.middle.*texel) column.fill(1.0f);
+      return;
+    }
     for (std::size_t i = 0; i < invocations.size(); ++i) {
       const AreaTexel found = area_texel(role, texture, shader.material, uv_of(at, i), slopes_of(at, i), texels);
       set_row(areas.middle.*texel, i, found.texel);
@@ -862,7 +867,7 @@ void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRe
     }
     std::array<FilterPlan, kMostPoints> plans;
     for (std::size_t i = 0; i < invocations.size(); ++i) {
-      // Made where it stays: a copy of what was just written in parts would wait for them.
+      // Made where it stays: a copy of what was just written in parts would wait for them, 6 % of a frame of msaa:8.
       ::new (&plans[i]) FilterPlan(texture.plan(slopes_of(at, i), lods[i]));
       if (texels) texels->count(plans[i].texels());
     }
@@ -937,6 +942,23 @@ std::vector<glm::vec4> SurfaceShader::colors_and_alphas(const std::vector<Invoca
                   run_programs(places, of_draw.data(), texels);
                   for (std::size_t k = 0; k < numbers.size(); ++k) colors[numbers[k]] = with_limited_alpha(of_draw[k]);
                 });
+  return colors;
+}
+
+std::vector<glm::vec4> SurfaceShader::colors_alone(const std::vector<Invocation>& invocations,
+                                                   TexelRequests* texels) const {
+  const auto runs_program = [&](const Invocation& invocation) {
+    return !is_flat(invocation.triangle) && is_program(invocation.triangle);
+  };
+  if (!(texels && texels->are_kept()) && std::ranges::none_of(invocations, runs_program))
+    return colors_and_alphas(invocations, texels);
+  std::vector<glm::vec4> colors;
+  colors.reserve(invocations.size());
+  for (const Invocation& invocation : invocations) {
+    colors.push_back(is_flat(invocation.triangle) ? glm::vec4(flat_[invocation.triangle], 1.0f)
+                                                  : shaded(invocation, texels));
+    end_request(texels);
+  }
   return colors;
 }
 

@@ -84,6 +84,10 @@ class SurfaceShader {
   // Each is a request of its own.
   std::vector<glm::vec4> colors_and_alphas(const std::vector<Invocation>& invocations,
                                            TexelRequests* texels = nullptr) const;
+  // The same, as if each were asked for alone: programs do not see each other's invocations, and requests that are kept
+  // stay in order.
+  std::vector<glm::vec4> colors_alone(const std::vector<Invocation>& invocations,
+                                      TexelRequests* texels = nullptr) const;
   glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, const Footprint& footprint = {}) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
     return shaded({triangle, place, footprint}, nullptr);
@@ -339,6 +343,10 @@ class TileShader {
     std::vector<glm::vec4> colors;
     for (const Invocation& invocation : invocations) colors.emplace_back(flat_[invocation.triangle], 1.0f);
     return colors;
+  }
+  std::vector<glm::vec4> colors_alone(const std::vector<Invocation>& invocations,
+                                      TexelRequests* texels = nullptr) const {
+    return shader_ ? shader_->colors_alone(invocations, texels) : colors_and_alphas(invocations);
   }
   std::vector<glm::vec3> colors(const std::vector<Invocation>& invocations, TexelRequests* texels = nullptr) const {
     std::vector<glm::vec3> colors;

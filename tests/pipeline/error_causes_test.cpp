@@ -99,8 +99,7 @@ TEST(ErrorCauses, AHalfThatIsMissingIsTheErrorOfItsLight) {
   trace.frames[0].target = ColorTarget::unorm;
   const Explained found = explain("msaa:1", trace);  // the sample at the centre has the half or not
   const double half = std::pow((0.5 + 0.055) / 1.055, 2.4);
-  EXPECT_TRUE(std::abs(found.error[0] - half) < 1e-3 || std::abs(found.error[0] - (1 - half)) < 1e-3)
-      << found.error[0];
+  EXPECT_TRUE(std::abs(found.error[0] - half) < 1e-3 || std::abs(found.error[0] - (1 - half)) < 1e-3) << found.error[0];
   EXPECT_NEAR(part(found, "mask") + part(found, "leak"), 1, 1e-2);
 }
 

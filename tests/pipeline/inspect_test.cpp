@@ -23,10 +23,11 @@ Tolerance tolerance_of(const Technique& technique) {
   const auto errs_by = [&](ErrorSource source) { return std::ranges::count(technique.errs_by, source) > 0; };
   const bool sums_up_samples = !technique.sampled_at.empty() && !errs_by(ErrorSource::merges_of_layers) &&
                                !errs_by(ErrorSource::sums_in_fp16) && !errs_by(ErrorSource::sums_in_unorm8);
-  if (sums_up_samples) return {0, 1e-6};
+  if (sums_up_samples) return {0, errs_by(ErrorSource::gbuffer_of_8_bits) ? 1e-6 : 1e-12};
   const double rounding = std::max(4e-3, technique.rounding_error);
   if (errs_by(ErrorSource::double_counting)) return {rounding, 10};
   if (errs_by(ErrorSource::sums_in_unorm8)) return {rounding, rounding};
+  if (errs_by(ErrorSource::merges_of_layers)) return {rounding, 1e-6};
   return {technique.counted_positions > 0 ? 3.0 / technique.counted_positions : rounding, 1e-4};
 }
 
@@ -102,10 +103,14 @@ void inspect(const Trace& trace, const std::string& name, unsigned seed, double 
   run.memory.modelled = false;
   run.textures = &textures;
   const Image reference = parse_technique("reference").render(trace, 0, run).image;
-  for (const std::string& spec : example_specs()) {
+  std::vector<std::string> specs = example_specs();
+  specs.push_back("acaa:64,double=stencil,color=fp32");
+  for (const std::string& spec : specs) {
     const Technique technique = parse_technique(spec);
     if (!technique.is_observable) continue;
     Tolerance tolerance = tolerance_of(technique);
+    if (spec.find("double=saturate") != std::string::npos) tolerance.weight_error = 1e-4;  // sums stop at 1
+    if (spec.find("color=fp32") != std::string::npos) tolerance = {1e-5, 1e-4};
     tolerance.most_rest += most_more;
     std::vector<PixelWeights> weights;
     const FrameSinks sinks{.weights = technique.has_weights ? &weights : nullptr};

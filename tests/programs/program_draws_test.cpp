@@ -126,8 +126,8 @@ OpStore %out %r
                             .decorations = "OpDecorate %texture DescriptorSet 1\nOpDecorate %texture Binding 5\n"};
 
 // Red and green above blue and white.
-ProgramTrace textured_scene() {
-  ProgramTrace scene(8, 8, kTextured);
+ProgramTrace textured_scene(const ShaderParts& shader = kTextured) {
+  ProgramTrace scene(8, 8, shader);
   scene.trace.program_images.push_back(
       {.name = "texels",
        .shape = ImageShape::d2,
@@ -170,21 +170,22 @@ TEST(ProgramDraws, TexturesAreFiltered) {
   });
 }
 
+StageCounters shade_of(const Trace& trace, const std::string& spec) {
+  const FrameResult result = rendered(trace, spec);
+  for (const StageCounters& stage : result.stages)
+    if (stage.stage.id == StageId::shade) return stage;
+  throw std::logic_error("no shade stage");
+}
+
 TEST(ProgramDraws, TexelsAndOperationsAreCharged) {
   const ProgramTrace scene = textured_scene();
-  const auto shade_of = [&](const std::string& spec) {
-    const FrameResult result = rendered(scene.trace, spec);
-    for (const StageCounters& stage : result.stages)
-      if (stage.stage.id == StageId::shade) return stage;
-    throw std::logic_error("no shade stage");
-  };
   // 16 quads, of which the diagonal parts 4: 20 quads. Helpers read texels, too: one for each of 80 invocations.
-  const StageCounters quads = shade_of("msaa:1");
+  const StageCounters quads = shade_of(scene.trace, "msaa:1");
   EXPECT_EQ(quads.lanes_issued, 80u);
   EXPECT_EQ(quads.texture_bytes, 80u * 4);
   EXPECT_EQ(quads.ops.fetch, 80u);
   // Of 64 pixels the diagonal parts 8. Each fragment takes two more places for its derivatives.
-  const StageCounters one_by_one = shade_of("beam");
+  const StageCounters one_by_one = shade_of(scene.trace, "beam");
   EXPECT_EQ(one_by_one.lanes_used, 72u);
   EXPECT_EQ(one_by_one.lanes_issued, 3 * 72u);
   EXPECT_EQ(one_by_one.ops.fetch, 3 * 72u);
@@ -195,6 +196,20 @@ TEST(ProgramDraws, TexelsAndOperationsAreCharged) {
   for (const StageCounters& stage : {quads, one_by_one}) {
     EXPECT_EQ(stage.texture_l2_bytes, 32u);
     EXPECT_EQ(stage.texture_dram_bytes, 32u);
+  }
+}
+
+// Shaders that take no differences run for several fragments at once, but each asks for its texels alone.
+TEST(ProgramDraws, FragmentsThatAreShadedOneByOneAreRequestsOfTheirOwn) {
+  ShaderParts parts = kTextured;
+  parts.globals += "%level = OpConstant %float 0\n";
+  parts.body.replace(parts.body.find("%r ="), std::string::npos,
+                     "%r = OpImageSampleExplicitLod %v4 %i_ %uv Lod %level\nOpStore %out %r\n");
+  const ProgramTrace scene = textured_scene(parts);
+  for (const char* spec : {"beam:order=sorted", "beam:order=sorted,window=one", "dvm"}) {
+    const StageCounters shade = shade_of(scene.trace, spec);
+    EXPECT_EQ(shade.texture_sector_bytes, 32 * shade.lanes_used) << spec;
+    EXPECT_GE(shade.lanes_used, 64u) << spec;
   }
 }
 
