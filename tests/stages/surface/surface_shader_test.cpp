@@ -393,14 +393,20 @@ SurfaceTrace all_kinds_of_materials(Random& random) {
     Material material;
     material.base_color = {real(1), real(1), real(1), 1};
     material.metallic = real(1), material.roughness = real(1), material.emissive = glm::vec3(real(1));
-    if (has(0)) material.base_texture = texture;
-    if (has(1)) material.metallic_roughness_texture = texture;
-    if (has(2)) material.normal_texture = texture;
-    if (has(3)) material.emissive_texture = texture;
+    const auto in_a_set = [&] {
+      Texture placed = texture;
+      placed.uv_set = random.one_in(2);
+      return placed;
+    };
+    if (has(0)) material.base_texture = in_a_set();
+    if (has(1)) material.metallic_roughness_texture = in_a_set();
+    if (has(2)) material.normal_texture = in_a_set();
+    if (has(3)) material.emissive_texture = in_a_set();
     material.unlit = has(4);
     material.alpha_mode = has(5) ? AlphaMode::blend : AlphaMode::opaque;
     const double x = 2 * (parts % 32), y = 4 * (parts / 32);
     scene.add_rectangle(x, y, x + 2, y + 4, 0.5, material);
+    for (const glm::vec2& uv : scene.mesh().uvs[0]) scene.mesh().uvs[1].push_back(0.5f * uv + 0.3f);
     if (has(6)) scene.mesh().vertex_colors.assign(4, {real(1), real(1), real(1), real(1)});
     if (has(7)) {
       scene.mesh().normals.assign(4, vector());
