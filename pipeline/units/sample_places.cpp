@@ -20,6 +20,7 @@ CellPlace SamplePlaces::of(std::uint32_t triangle, std::size_t cell) const {
 }
 
 glm::vec2 SamplePlaces::of(const SampleFragment& fragment) const {
+  // Without the triangle's edges: these are most of a picture's fragments.
   if (at_ == ShadeAt::centre) return middle_in_pixel(sampling_.grid, fragment.x, fragment.y);
   const glm::dvec2 point =
       shading_point(bin_.triangles().triangles[fragment.triangle], fragment, sampling_, at_).position;

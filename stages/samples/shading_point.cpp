@@ -26,17 +26,16 @@ ShadingPoint shading_point(const SetupTriangle& triangle, const SampleFragment& 
   if (at == ShadeAt::sample)
     return {glm::dvec2(left + sampling.pattern.x[0], top + sampling.pattern.y[0]) / double{kSubpixelUnits}, true};
   const CellGrid& grid = sampling.grid;
-  const ShadingPoint centre{glm::dvec2(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)) +
-                                glm::dvec2(middle_in_pixel(grid, fragment.x, fragment.y)),
-                            true};
-  if (at == ShadeAt::centre) return centre;
   const std::int64_t x = left + grid.cell_width() / 2, y = top + grid.cell_height() / 2;
   bool covered = true;
   for (int k = 0; k < 3; ++k) {
     const Edge edge = edge_of(triangle, k);
     covered &= is_inside<std::int64_t>({edge.a, edge.b, edge.c}, x, y, edge.owns ? 0 : 1);
   }
-  if (covered) return centre;
+  if (covered || at == ShadeAt::centre)
+    return {glm::dvec2(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)) +
+                glm::dvec2(middle_in_pixel(grid, fragment.x, fragment.y)),
+            true};
 
   std::uint32_t bits[kMaxMaskSamples];
   float xs[kMaxMaskSamples], ys[kMaxMaskSamples];

@@ -25,9 +25,12 @@ std::optional<double> tolerance_of(const Technique& technique) {
   const auto errs_by = [&](ErrorSource source) { return std::ranges::count(technique.errs_by, source) > 0; };
   // The background shines through along the diagonals of quads, or all triangles of equal depth are added.
   if (errs_by(ErrorSource::independent_fragments) || errs_by(ErrorSource::double_counting)) return std::nullopt;
-  if (errs_by(ErrorSource::published_merges)) return 0.0625;  // fragments that lie close in depth
+  // Of many frames some have what the first ones have not.
+  const bool are_many = thoroughness() > 1;
+  if (errs_by(ErrorSource::published_merges)) return are_many ? 0.125 : 0.0625;  // fragments that lie close in depth
+  if (are_many && errs_by(ErrorSource::merges_of_layers)) return 0.25;           // where there are more than three
   // Owners become one before all have been seen.
-  if (technique.counted_positions == 128) return 2.0 / technique.counted_positions;
+  if (are_many && technique.counted_positions > 0) return 2.0 / technique.counted_positions;
   return std::max(kRounding, technique.rounding_error);
 }
 

@@ -24,7 +24,7 @@ Tolerance tolerance_of(const Technique& technique) {
   const bool sums_up_samples = !technique.sampled_at.empty() && !errs_by(ErrorSource::merges_of_layers) &&
                                !errs_by(ErrorSource::sums_in_fp16) && !errs_by(ErrorSource::sums_in_unorm8);
   if (sums_up_samples) return {0, errs_by(ErrorSource::gbuffer_of_8_bits) ? 1e-6 : 1e-12};
-  const double rounding = std::max(4e-3, technique.rounding_error);
+  const double rounding = std::max(errs_by(ErrorSource::estimated_areas) ? 2e-3 : 4e-3, technique.rounding_error);
   if (errs_by(ErrorSource::double_counting)) return {rounding, 10};
   if (errs_by(ErrorSource::sums_in_unorm8)) return {rounding, rounding};
   if (errs_by(ErrorSource::merges_of_layers)) return {rounding, 1e-6};

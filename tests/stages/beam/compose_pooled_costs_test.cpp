@@ -179,6 +179,10 @@ const OperationCounts kLimit = kCount + Ops{.mul_add = 1} + kFixedValue * 7 +
 
 constexpr std::uint64_t kSetup = 4 + 5 * 8, kSlotBytes = 8;  // to compute a plane: its triangle, and five doubles
 
+TEST(PooledCosts, OneMergeIsAsDocsCostsSays) {
+  EXPECT_EQ(kMerge, (OperationCounts{.mul_add = 20, .add = 40, .bit = 34, .special = 3, .convert = 5}));
+}
+
 TEST(PooledCosts, Steps) {
   using Work = PooledWork;
   struct Step {
