@@ -22,7 +22,7 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;
   const auto samples = static_cast<std::size_t>(sampling.pattern.count);
   const auto pixel_of = [&](const SampleFragment& fragment) {
-    return tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
+    return in.tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
   };
   std::vector<Invocation> invocations;
   for (std::size_t i = 0; i < fragments.list.size(); ++i)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -84,7 +83,7 @@ void PictureCache::remove_oldest() const {
     if (entry.path().extension() == ".exr") pictures.emplace_back(entry.last_write_time(), entry.path());
   }
   std::ranges::sort(pictures);
-  for (fs::path& picture : pictures | std::views::values) {
+  for (auto& [written, picture] : pictures) {
     if (bytes <= most_bytes_) return;
     for (const char* const extension : {".exr", ".json"}) {
       picture.replace_extension(extension);
