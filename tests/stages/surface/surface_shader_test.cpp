@@ -49,6 +49,20 @@ TEST(SurfaceShader, ByPixelItIsTheCentresWhateverPlaceIsAsked) {
   EXPECT_NE(by_place.shader.color(0, {6, 2, 0.0f, 0.5f}), centre);
 }
 
+// Where a centre lies outside, the weights of the second and third vertex are cut off at 0 and at what is left of 1.
+TEST(SurfaceShader, ByPixelCentresBesideATriangleTakeAPointOnItsBorder) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 4, 4, 0.5, unlit_material(glm::vec4(1.0f)));
+  scene.mesh().vertex_colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {0, 0, 0, 1}};
+  const ShadedScene shaded(scene.trace, {.colors = SurfaceColors::by_pixel});
+  // Triangle (0, 0), (4, 0), (4, 4) has the weights 1 - x / 4, (x - y) / 4 and y / 4 at (x, y).
+  expect_near(shaded.shader.color(0, {3, 1}), {0.125, 0.5, 0.375}, 1e-6);
+  expect_near(shaded.shader.color(0, {4, 1}), {0, 0.75, 0.25}, 1e-6);    // -1/8, 3/4, 3/8
+  expect_near(shaded.shader.color(0, {1, 2}), {0.375, 0, 0.625}, 1e-6);  // 5/8, -1/4, 5/8
+  expect_near(shaded.shader.color(0, {2, -1}), {0.25, 0.75, 0}, 1e-6);   // 3/8, 3/4, -1/8
+  expect_near(shaded.shader.color(0, {5, 0}), {0, 1, 0}, 1e-6);          // -3/8, 5/4, 1/8
+}
+
 // Textures with coordinates of their own; which set has which does not matter.
 TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
   SurfaceTrace scene(16, 16);
