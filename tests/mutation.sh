@@ -425,7 +425,7 @@ mutants=(  # file | text as it is | broken
   'stages/spirv/shader_executor.cpp|stopped_ += stopped;|'
   'stages/surface/program_shader.cpp|if (counts.stopped > 0) bound.most_steps = kStepsOfEndless;|'
   'stages/surface/program_shader.cpp|if (counts.stopped > 0) *draw.stopped += counts.stopped;|'
-  'pipeline/memory/block_cache.h|lines_[place].dirty |= request_.write;|'
+  'pipeline/memory/block_cache.h|= request_.write;|= 0;'
   'pipeline/memory/tile_surface.h|access.key == key && access.position|access.position'
   'stages/beam/compose_pooled.cpp|contested &= (1u << at_.shape.owners) - 1;|'
   'stages/data/closed_depth.h|nearest[i] > depth_[tile_.index(x[i], y[i])]|nearest[i] >= depth_[tile_.index(x[i], y[i])]'

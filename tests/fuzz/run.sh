@@ -17,10 +17,16 @@ cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz
 # The names of techniques and their options, from the tables of docs/techniques.md.
 sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -oE '[a-z0-9.-]+[=:]?' | sort -u |
   sed 's/.*/"&"/' >"$TMPDIR/spec.dict"
+# The keys and names of JSON files, from their readers, and a few other words.
+{
+  grep -rohE '"[a-z][a-z0-9_]*"' tools/{evaluate,report,sweep,claims} docs/examples/*.json | sort -u
+  printf '%s\n' '{}' '[]' -1 1e308 1e-308 18446744073709551615 null true ../
+} | sed 's/"/\\"/g; s/.*/"&"/' >"$TMPDIR/config.dict"
+cp "$TMPDIR/config.dict" "$TMPDIR/results.dict"
 # Runs one target, and then prints what it said.
 run_target() {
   local target=$1 seconds=$2 found=build/fuzz/found/$1 dictionary=tests/fuzz/$1.dict options=() said status=0
-  [[ $target != spec ]] || dictionary=$TMPDIR/spec.dict
+  [[ ! -e $TMPDIR/$target.dict ]] || dictionary=$TMPDIR/$target.dict
   [[ ! -e $dictionary ]] || options=(-dict="$dictionary")
   mkdir -p "$found"
   said=$(build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" "${options[@]}" \

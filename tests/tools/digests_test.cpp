@@ -8,6 +8,7 @@
 #include "tests/test.h"
 #include "tools/files/digest.h"
 #include "traces/scenes.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe::digests_test {
 
@@ -41,6 +42,12 @@ std::map<std::string, std::string> found_lines() {
     const Trace trace = make_scene(kind.name, {.triangles = 1000, .width = 32, .height = 19});
     for (const std::string& spec : example_specs())
       lines[std::string(kind.name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
+  }
+  for (const char* sample : {"captured_quads", "program_quad"}) {  // with fragment shaders of their own
+    const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" /
+                                   (std::string(sample) + ".json"));
+    for (const std::string& spec : example_specs())
+      lines[std::string(sample) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
   }
   // Pixels in memory, whose caches see the order in which pixels are visited, with flat surfaces and with others.
   FrameInput in_memory{2};
