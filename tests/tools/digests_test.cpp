@@ -7,8 +7,8 @@
 #include "pipeline/technique_table.h"
 #include "tests/test.h"
 #include "tools/files/digest.h"
-#include "traces/scenes.h"
 #include "traces/files/trace_io.h"
+#include "traces/scenes.h"
 
 namespace beampipe::digests_test {
 
@@ -44,8 +44,8 @@ std::map<std::string, std::string> found_lines() {
       lines[std::string(kind.name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
   }
   for (const char* sample : {"captured_quads", "program_quad"}) {  // with fragment shaders of their own
-    const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" /
-                                   (std::string(sample) + ".json"));
+    const Trace trace =
+        read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / (std::string(sample) + ".json"));
     for (const std::string& spec : example_specs())
       lines[std::string(sample) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
   }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tests/tools/fixtures.h"
-#include "tools/files/image_io.h"
+#include "traces/files/image_file.h"
 
 namespace beampipe {
 

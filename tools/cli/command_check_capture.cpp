@@ -17,6 +17,7 @@
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
+#include "traces/files/image_file.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe {

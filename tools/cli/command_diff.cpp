@@ -13,6 +13,7 @@
 #include "tools/files/format.h"
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
+#include "traces/files/image_file.h"
 
 namespace beampipe {
 namespace {

@@ -60,6 +60,17 @@ std::string csv_field(const Json& value) {
   return quoted.append("\"");
 }
 
+std::string csv_text(const std::vector<std::string>& names, const std::vector<std::vector<Json>>& rows) {
+  std::string text;
+  const auto add_line = [&](const auto& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? "," : "") + csv_field(values[i]);
+    text += "\r\n";
+  };
+  add_line(names);
+  for (const std::vector<Json>& row : rows) add_line(row);
+  return text;
+}
+
 std::vector<CsvRow> read_csv(const std::filesystem::path& file, const std::vector<std::string>& header) {
   std::vector<CsvRow> rows = rows_of(read_input_file(file, file.string(), kMostBytes), file);
   const std::string expected = "the header " + joined(header);

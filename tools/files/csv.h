@@ -13,6 +13,9 @@ namespace beampipe {
 // A value as a field: in quotes where it has to be; null is empty.
 std::string csv_field(const Json& value);
 
+// A line of names and one for each row.
+std::string csv_text(const std::vector<std::string>& names, const std::vector<std::vector<Json>>& rows);
+
 struct CsvRow {
   std::size_t line = 0;  // where it starts, from 1
   std::vector<std::string> fields;

@@ -9,13 +9,13 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <openexr.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 
+#include "traces/files/image_file.h"
 #include "traces/srgb.h"
 
 namespace beampipe {
@@ -205,21 +205,6 @@ std::string encode_png(const Image& image) {
     for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = srgb_byte(image.rgba[4 * i + c]);
   }
   return encode_png(image.width, image.height, rgb);
-}
-
-std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = width;
-  png.height = height;
-  png.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
-  std::string bytes(size, '\0');
-  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, rgb.data(), 0, nullptr)) {
-    throw std::runtime_error(std::string("cannot encode a PNG image: ") + png.message);
-  }
-  bytes.resize(size);
-  return bytes;
 }
 
 Image read_exr(const std::filesystem::path& file) {

@@ -42,9 +42,6 @@ std::uint8_t srgb_byte(float linear);
 // black. Alpha is left out.
 std::string encode_png(const Image& image);
 
-// The bytes of an 8-bit RGB PNG file: `rgb` has three bytes per pixel, row 0 on top, and is stored unchanged.
-std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb);
-
 // Reads an EXR file with channels R, G and B of any type, and A if there is one; otherwise A = 1. Throws ImageError if
 // the file is broken, lacks a channel, is larger than 16384 pixels on a side, or has a data window other than the whole
 // picture from (0, 0).

@@ -9,6 +9,7 @@
 #include "tools/files/image_io.h"
 #include "tools/report/tables.h"
 #include "traces/files/base64.h"
+#include "traces/files/image_file.h"
 #include "traces/files/input_file.h"
 
 namespace beampipe {

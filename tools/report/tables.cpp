@@ -526,18 +526,9 @@ std::string sentence(std::string definition) {
 }
 
 std::string csv_text(const Table& table) {
-  std::string text;
-  const auto add_field = [&](std::size_t column, const std::string& field) {
-    if (column > 0) text += ',';
-    text += field;
-  };
-  for (std::size_t i = 0; i < table.columns.size(); ++i) add_field(i, csv_field(table.columns[i].key));
-  text += "\r\n";
-  for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) add_field(i, csv_field(row[i]));
-    text += "\r\n";
-  }
-  return text;
+  std::vector<std::string> keys;
+  for (const Column& column : table.columns) keys.push_back(column.key);
+  return csv_text(keys, table.rows);
 }
 
 }  // namespace beampipe

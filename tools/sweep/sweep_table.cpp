@@ -237,14 +237,9 @@ SweepTable make_table(const SweepPlan& plan, TraceShelf& shelf, const SweepResul
 }
 
 std::string csv_text(const SweepTable& table) {
-  std::string text;
-  const auto add_line = [&](const auto& items, auto&& field) {
-    for (std::size_t i = 0; i < items.size(); ++i) text += (i > 0 ? "," : "") + field(items[i]);
-    text += "\r\n";
-  };
-  add_line(table.columns, [](const SweepColumn& column) { return csv_field(column.name); });
-  for (const std::vector<Json>& row : table.rows) add_line(row, csv_field);
-  return text;
+  std::vector<std::string> names;
+  for (const SweepColumn& column : table.columns) names.push_back(column.name);
+  return csv_text(names, table.rows);
 }
 
 }  // namespace beampipe

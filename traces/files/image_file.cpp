@@ -143,6 +143,20 @@ TextureImage decode_jpeg(std::string_view bytes, std::uint64_t most_texels) {
   return image;
 }
 
+std::string encode_png(std::uint32_t width, std::uint32_t height, png_uint_32 format, const void* pixels) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = width;
+  png.height = height;
+  png.format = format;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels, 0, nullptr))
+    throw std::runtime_error(std::string("cannot encode a PNG image: ") + png.message);
+  bytes.resize(size);
+  return bytes;
+}
+
 }  // namespace
 
 TextureImage decode_image(std::string_view bytes, std::uint64_t most_texels) {
@@ -161,18 +175,11 @@ TextureImage decode_image(std::string_view bytes, const std::string& where, std:
 }
 
 std::string encode_png(const TextureImage& image) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = image.width;
-  png.height = image.height;
-  png.format = PNG_FORMAT_RGBA;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
-  std::string bytes(size, '\0');
-  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.texels.data(), 0, nullptr)) {
-    throw std::runtime_error(std::string("cannot encode a PNG image: ") + png.message);
-  }
-  bytes.resize(size);
-  return bytes;
+  return encode_png(image.width, image.height, PNG_FORMAT_RGBA, image.texels.data());
+}
+
+std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb) {
+  return encode_png(width, height, PNG_FORMAT_RGB, rgb.data());
 }
 
 }  // namespace beampipe

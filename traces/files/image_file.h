@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "traces/material.h"
 
@@ -33,5 +34,8 @@ TextureImage decode_image(std::string_view bytes, const std::string& where, std:
 // The bytes of a PNG file, which decode_image() turns into the same texels. Throws std::runtime_error if the image has
 // no texels.
 std::string encode_png(const TextureImage& image);
+
+// The same of RGB: three bytes for each pixel, row 0 on top.
+std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace beampipe

@@ -297,6 +297,21 @@ TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
   EXPECT_EQ(draws.notes(), expected);
 }
 
+// Which pixels a cutout leaves is known when it is drawn.
+TEST(DrawPlan, CutoutsNeitherRepeatDepthsNorWriteThoseOfWholeTriangles) {
+  for (const std::optional<std::size_t> cutout : {std::optional<std::size_t>(), {0}, {1}}) {
+    Draws draws;
+    draws.trace.materials.resize(1);
+    draws.trace.materials[0].alpha_mode = AlphaMode::mask;
+    Draw again = draws.add(Compare::less);
+    again.state.depth.function = Compare::equal;
+    draws.frame.draws.push_back(again);
+    if (cutout) draws.frame.draws[*cutout].material = 0;
+    const DrawNote note{"depth function equal, without an earlier draw of the same triangles", false, 1, 1};
+    EXPECT_EQ(std::ranges::count(draws.notes(), note), cutout ? 1 : 0);
+  }
+}
+
 TEST(DrawPlan, NeverDrawsNothing) {
   Draws draws;
   draws.add(Compare::never);

@@ -7,6 +7,7 @@
 #include "tests/traces/gltf_builder.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
+#include "traces/files/image_file.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::program_test {
