@@ -37,8 +37,6 @@ TileGrid bin_grid(const FrameContext& context, const BinPlan& plan, int bin_size
 
 // All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
 std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
-  const bool accumulates = std::ranges::find(plan.stages, StageId::accumulate) != plan.stages.end();
-  const StageId opaque_ends = accumulates ? StageId::accumulate : StageId::depth_test;
   std::vector<Stage> stages;
   if (plan.has_prepass) {
     stages = {{StageId::vertex_setup, Pass::prepass}, {StageId::sample_raster, Pass::prepass}};
@@ -47,10 +45,10 @@ std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
   }
   stages.emplace_back(StageId::vertex_setup);
   for (const StageId stage : plan.stages) {
+    if (stage == StageId::blend && !context.rop && !context.has_blending()) continue;
     stages.emplace_back(stage);
     if (stage == StageId::beam_fragment && context.has_alpha()) stages.emplace_back(StageId::alpha_mask);
     if (stage == StageId::sample_raster && context.has_cutouts()) stages.emplace_back(StageId::alpha_test);
-    if (stage == opaque_ends && context.has_blending()) stages.emplace_back(StageId::blend);
   }
   return stages;
 }

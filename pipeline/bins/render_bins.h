@@ -19,8 +19,10 @@ namespace beampipe {
 
 // How a technique renders its bins.
 struct BinPlan {
-  std::vector<StageId> stages;  // of a bin, in the order of the pipeline; those for alpha are added where they belong
-  Framebuffer framebuffer;      // with the size of the bins, which FrameInput::tile_size overrides
+  // Of a bin, in the order of the pipeline. Those for alpha are added where they belong; `blend` is left out of frames
+  // that blend nothing.
+  std::vector<StageId> stages;
+  Framebuffer framebuffer;  // with the size of the bins, which FrameInput::tile_size overrides
   // The first pass over the geometry writes depth alone. Its stages (vertex_setup, sample_raster, alpha_test for
   // cutouts, depth_test) are counted apart from those of the other pass, as "prepass_vertex_setup" and so on.
   bool has_prepass = false;

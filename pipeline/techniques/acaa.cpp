@@ -26,11 +26,12 @@ Framebuffer acaa_framebuffer(const AcaaOptions& options) {
 
 std::vector<StageId> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
-    return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test,
-            StageId::shade,         StageId::accumulate, StageId::resolve};
+    return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test, StageId::shade,
+            StageId::accumulate,    StageId::blend,      StageId::resolve};
   if (options.visible == VisibleSamples::shader)
-    return {StageId::sample_raster, StageId::shade, StageId::accumulate, StageId::resolve};
-  return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
+    return {StageId::sample_raster, StageId::shade, StageId::accumulate, StageId::blend, StageId::resolve};
+  return {StageId::sample_raster, StageId::depth_test, StageId::shade,
+          StageId::accumulate,    StageId::blend,      StageId::resolve};
 }
 
 std::vector<ErrorSource> error_sources(const AcaaOptions& options) {

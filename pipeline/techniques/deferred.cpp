@@ -14,10 +14,10 @@ namespace {
 FrameResult render_deferred(const FrameJob& job) {
   const FrameContext context(job, {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  const BinPlan plan{
-      .stages = {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::light, StageId::resolve},
-      .framebuffer = deferred_framebuffer(),
-      .has_prepass = true};
+  const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::light,
+                                StageId::resolve, StageId::blend},
+                     .framebuffer = deferred_framebuffer(),
+                     .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test(bin, sampling, 0);
     bin.finish(draw_deferred(bin, depth_test));

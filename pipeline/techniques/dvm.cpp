@@ -140,10 +140,11 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
-  const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::sample_select,
-                                StageId::material_sort, StageId::shade, StageId::light, StageId::motion},
-                     .framebuffer = dvm_framebuffer(options),
-                     .empty_bins_differ = true};
+  const BinPlan plan{
+      .stages = {StageId::sample_raster, StageId::depth_test, StageId::sample_select, StageId::material_sort,
+                 StageId::shade, StageId::light, StageId::blend, StageId::motion},
+      .framebuffer = dvm_framebuffer(options),
+      .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage(StageId::sample_select);
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);

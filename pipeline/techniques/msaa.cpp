@@ -116,7 +116,7 @@ Technique technique_of(const MsaaOptions& options, const Sampling& sampling) {
 }  // namespace
 
 std::vector<StageId> forward_stages(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory) {
-  std::vector<StageId> stages = {StageId::sample_raster, StageId::shade, StageId::depth_test};
+  std::vector<StageId> stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::blend};
   if (needs_resolve(framebuffer, samples, memory)) stages.push_back(StageId::resolve);
   return stages;
 }

@@ -41,10 +41,10 @@ std::vector<StageId> stages_of(TaaShading shading, const MemoryParameters& memor
   switch (shading) {
     case TaaShading::visibility:
       return {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
-              StageId::light,         StageId::resolve,    StageId::motion};
+              StageId::light,         StageId::resolve,    StageId::blend,         StageId::motion};
     case TaaShading::deferred:
-      return {StageId::sample_raster, StageId::depth_test, StageId::shade,
-              StageId::light,         StageId::resolve,    StageId::motion};
+      return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::light,
+              StageId::resolve,       StageId::blend,      StageId::motion};
     case TaaShading::forward:
       forward.push_back(StageId::motion);
       return forward;

@@ -15,7 +15,7 @@ FrameResult render_visibility(const FrameJob& job, const VisibilityOptions& opti
   const Sampling sampling{CellGrid{}, standard_pattern(options.samples)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
   const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
-                                StageId::light, StageId::resolve},
+                                StageId::light, StageId::resolve, StageId::blend},
                      .framebuffer = visibility_framebuffer(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);

@@ -141,6 +141,20 @@ TEST(AlphaMask, FineTexelsLeaveTheirMean) {
   }
 }
 
+// Eight texels to a pixel, of which four pass: half of the pixel, but all or nothing of each of its quarters.
+TEST(AlphaMask, APixelThatPassesInPartIsLookedUpInQuarters) {
+  SurfaceTrace scene(8, 8);
+  TextureImage image = filled_image(64, 64, {255, 255, 255, 255});
+  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = i % 8 < 4 ? 255 : 0;
+  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+  const std::vector<SamplePattern> patterns = cell_patterns(256);
+  const Masked found = masked(ShadedScene(scene.trace), 256, AlphaPlaces::one);
+  EXPECT_EQ(positions(found.after), 64 * 128);
+  for (const Fragment& fragment : found.after)
+    for (std::size_t s = 0; s < 256; ++s)
+      if (fragment.mask.test(s)) EXPECT_LT(patterns[s / 32].x[s % 32], 128) << s;
+}
+
 // Of a cutout without mixed positions, the area shrinks by the positions' share.
 TEST(AlphaMask, AreaShrinksByThePositionsShare) {
   SurfaceTrace scene(8, 8);

@@ -297,18 +297,36 @@ TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
   EXPECT_EQ(draws.notes(), expected);
 }
 
-// Which pixels a cutout leaves is known when it is drawn.
-TEST(DrawPlan, CutoutsNeitherRepeatDepthsNorWriteThoseOfWholeTriangles) {
-  for (const std::optional<std::size_t> cutout : {std::optional<std::size_t>(), {0}, {1}}) {
+// Which pixels a cutout leaves is known when it is drawn, and translucent triangles let others show.
+TEST(DrawPlan, OnlyOpaqueTrianglesWriteDepthsThatOthersRepeat) {
+  const auto notes = [](std::size_t changed, AlphaMode mode) {
     Draws draws;
     draws.trace.materials.resize(1);
-    draws.trace.materials[0].alpha_mode = AlphaMode::mask;
+    draws.trace.materials[0].alpha_mode = mode;
     Draw again = draws.add(Compare::less);
     again.state.depth.function = Compare::equal;
     draws.frame.draws.push_back(again);
-    if (cutout) draws.frame.draws[*cutout].material = 0;
+    draws.frame.draws[changed].material = 0;
     const DrawNote note{"depth function equal, without an earlier draw of the same triangles", false, 1, 1};
-    EXPECT_EQ(std::ranges::count(draws.notes(), note), cutout ? 1 : 0);
+    return std::ranges::count(draws.notes(), note);
+  };
+  for (const std::size_t changed : {0u, 1u}) {
+    EXPECT_EQ(notes(changed, AlphaMode::opaque), 0) << changed;
+    EXPECT_EQ(notes(changed, AlphaMode::mask), 1) << changed;
+  }
+  EXPECT_EQ(notes(0, AlphaMode::blend), 1);
+  EXPECT_EQ(notes(1, AlphaMode::blend), 0);
+}
+
+TEST(DrawPlan, WhatPassesAtEqualDepthHidesEarlierDraws) {
+  using enum Compare;
+  for (const Compare function : {never, less, equal, less_equal, greater, not_equal, greater_equal, always}) {
+    Draws draws;
+    draws.add(less).state.depth.near = 0.25f;  // so that depths are placed
+    draws.add(function);
+    draws.add(less);
+    const bool passes = function == equal || function == less_equal || function == greater_equal || function == always;
+    EXPECT_EQ(draws.plan().placements[1].last_wins, passes) << static_cast<int>(function);
   }
 }
 
