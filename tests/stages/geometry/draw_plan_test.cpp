@@ -299,23 +299,17 @@ TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
 
 // Which pixels a cutout leaves is known when it is drawn, and translucent triangles let others show.
 TEST(DrawPlan, OnlyOpaqueTrianglesWriteDepthsThatOthersRepeat) {
-  const auto notes = [](std::size_t changed, AlphaMode mode) {
+  for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
     Draws draws;
     draws.trace.materials.resize(1);
     draws.trace.materials[0].alpha_mode = mode;
-    Draw again = draws.add(Compare::less);
+    draws.add(Compare::less).material = 0;
+    Draw again = draws.frame.draws[0];
     again.state.depth.function = Compare::equal;
     draws.frame.draws.push_back(again);
-    draws.frame.draws[changed].material = 0;
     const DrawNote note{"depth function equal, without an earlier draw of the same triangles", false, 1, 1};
-    return std::ranges::count(draws.notes(), note);
-  };
-  for (const std::size_t changed : {0u, 1u}) {
-    EXPECT_EQ(notes(changed, AlphaMode::opaque), 0) << changed;
-    EXPECT_EQ(notes(changed, AlphaMode::mask), 1) << changed;
+    EXPECT_EQ(std::ranges::count(draws.notes(), note), mode == AlphaMode::opaque ? 0 : 1);
   }
-  EXPECT_EQ(notes(0, AlphaMode::blend), 1);
-  EXPECT_EQ(notes(1, AlphaMode::blend), 0);
 }
 
 TEST(DrawPlan, WhatPassesAtEqualDepthHidesEarlierDraws) {
@@ -507,6 +501,10 @@ TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
   EXPECT_TRUE(needs([&](Draw&, Places& places) { put(places, 1); })) << "is not less than 1";
   EXPECT_FALSE(
       needs([&](Draw& draw, Places& places) { put(places, 1), draw.state.depth.function = Compare::less_equal; }));
+  EXPECT_TRUE(needs([&](Draw& draw, Places& places) { put(places, -1), draw.state.depth.function = Compare::greater; }))
+      << "is not greater than 0";
+  EXPECT_FALSE(
+      needs([&](Draw& draw, Places& places) { put(places, -1), draw.state.depth.function = Compare::greater_equal; }));
   EXPECT_FALSE(needs([&](Draw&, Places& places) { put(places, 1), places[0].z = 0; })) << "1 along a line";
   EXPECT_TRUE(needs([&](Draw& draw, Places& places) {
     put(places, 1), places[0].z = 2, places[1].z = 0, draw.state.depth.clip = false;
