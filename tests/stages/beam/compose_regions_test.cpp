@@ -200,6 +200,21 @@ TEST(Regions, PlanesThatCrossAreComparedAtPositions) {
   expect_partition(pixel.regions);
 }
 
+// The same. The right half lies behind, and its stencil value says so.
+TEST(Regions, PositionsThatFailTheDepthTestTakeItsStencilOperation) {
+  OnePixel pixel;
+  pixel.everywhere(plain(), kRed, -0.5f);
+  pixel.clear_before_next(5u);
+  RopRule rule;
+  rule.has_stencil = true;
+  rule.stencil[0].depth_fail = rule.stencil[1].depth_fail = StencilOperation::increment;
+  pixel.begin(rule, kGreen);
+  pixel.triangle({-1024, -1024, -2.75f}, {2048, -1024, 3.25f}, {-1024, 2048, -2.75f});
+  pixel.compose();
+  ASSERT_EQ(pixel.regions.size(), 2u);
+  for (const Region& region : pixel.regions) EXPECT_EQ(region.stencil, region.color[1] == 1 ? 5 : 6);
+}
+
 TEST(Regions, DepthIsWrittenWhereTheDrawSaysSo) {
   for (const bool writes : {false, true}) {
     OnePixel pixel;
