@@ -379,7 +379,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_regions.cpp|a.stencil != b.stencil|false'
   'stages/beam/compose_regions.cpp|std::abs(a.color[c] - b.color[c]) > kSameColor|a.color[c] - b.color[c] > kSameColor'
   'stages/beam/compose_regions.cpp|while (regions.size() > kMostRegions)|while (regions.size() >= kMostRegions)'
-  'stages/beam/compose_regions.cpp|if (lost < least)|if (lost <= least)'
+  'stages/beam/compose_regions.cpp|if (lost < least)|if (lost > least)'
   'stages/beam/compose_regions.cpp|if (regions[one].area < regions[other].area) std::swap(regions[one], regions[other]);|'
   'stages/beam/compose_regions.cpp|if (met.passed.none()) return false;|'
   'stages/beam/compose_regions.cpp|color[c], area / sum)|color[c], 0.5f)'

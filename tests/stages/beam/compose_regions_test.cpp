@@ -539,6 +539,24 @@ TEST(Regions, TooManyRegionsBecomeOneOfThoseThatAreAlike) {
   expect_partition(pixel.regions);
 }
 
+// Strips of 14/256 px, but one of 28. Numbers 3 and 12 are alike, and have different depths.
+TEST(Regions, AMergeKeepsTheDepthOfTheLargerRegion) {
+  for (const int wide : {3, 12}) {
+    OnePixel pixel;
+    RopRule rule;
+    rule.depth = Compare::always;
+    for (int strip = 0; strip < 17; ++strip) {
+      pixel.begin(rule, glm::vec4(glm::vec3(static_cast<float>(strip == 12 ? 3 : strip) / 16), 1));
+      pixel.right_of(14 * (strip + (strip > wide)), strip == 12 ? -0.51f : -0.5f);
+    }
+    pixel.compose();
+    ASSERT_EQ(pixel.merged, 1);
+    const auto both = std::ranges::max_element(pixel.regions, {}, [](const Region& r) { return r.positions.count(); });
+    EXPECT_NEAR(both->positions.count(), 42, 4);
+    EXPECT_EQ(both->plane.z, wide == 12 ? -0.51f : -0.5f);
+  }
+}
+
 // What the pool on chip has no room for lies in memory, and is the same.
 TEST(Regions, TheSizeOfThePoolChangesNoColour) {
   const auto compose = [](OnePixel& pixel, std::size_t bytes) {
