@@ -762,6 +762,28 @@ TEST(Regions, AWholeLayerWritesNoPlanes) {
   EXPECT_EQ(written(1) - written(0), kPixelWordBytes + 2 * kRegionBytes);
 }
 
+// A whole fragment, the pixel's word, its region and a link of two bytes.
+TEST(Regions, AWholeLayerReadsNoPositions) {
+  const auto read = [](int layers) {
+    OnePixel pixel;
+    for (int i = 0; i < layers; ++i) pixel.everywhere(over(), {1, 1, 1, 0.5f});
+    pixel.compose();
+    return pixel.counters.bytes_read;
+  };
+  EXPECT_EQ(read(3) - read(2), (2 + 3 + 16) + kPixelWordBytes + kRegionBytes + 2);
+}
+
+// Two regions and two chunks of positions, of which one fits on chip: three links are read, three chunks written, and
+// read by the next layer. Of that, the one region moves to where there is room now.
+TEST(Regions, WhatIsLeftOfARecordMovesOnChip) {
+  OnePixel pixel;
+  pixel.begin(without_depth(), kRed);
+  pixel.left_of(128);
+  pixel.everywhere(without_depth(), kGreen);
+  EXPECT_EQ(pixel.compose(18), kGreen);
+  EXPECT_EQ(pixel.spills, 3u + 3 + 3 + 1 + 1);
+}
+
 TEST(Regions, RecordsHoldWhatTheLayoutSays) {
   EXPECT_EQ(region_chunks(1, false, 8), 1u);         // one region, no planes
   EXPECT_EQ(region_chunks(2, true, 8), 2u + 2 + 1);  // a plane of 32 bytes
