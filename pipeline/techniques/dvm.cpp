@@ -142,7 +142,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
 
   const BinPlan plan{
       .stages = {StageId::sample_raster, StageId::depth_test, StageId::sample_select, StageId::material_sort,
-                 StageId::shade, StageId::light, StageId::blend, StageId::motion},
+                 StageId::shade, StageId::light, StageId::motion, StageId::blend},
       .framebuffer = dvm_framebuffer(options),
       .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
