@@ -21,8 +21,7 @@ sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -o
 {
   grep -rohE '"[a-z][a-z0-9_]*"' tools/{evaluate,report,sweep,claims} docs/examples/*.json | sort -u
   printf '%s\n' '{}' '[]' -1 1e308 1e-308 18446744073709551615 null true ../
-} | sed 's/"/\\"/g; s/.*/"&"/' >"$TMPDIR/config.dict"
-cp "$TMPDIR/config.dict" "$TMPDIR/results.dict"
+} | sed 's/"/\\"/g; s/.*/"&"/' | tee "$TMPDIR/config.dict" >"$TMPDIR/results.dict"
 # Runs one target, and then prints what it said.
 run_target() {
   local target=$1 seconds=$2 found=build/fuzz/found/$1 dictionary=tests/fuzz/$1.dict options=() said status=0

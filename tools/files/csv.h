@@ -13,7 +13,7 @@ namespace beampipe {
 // A value as a field: in quotes where it has to be; null is empty.
 std::string csv_field(const Json& value);
 
-// A line of names and one for each row.
+// A line of names, and one for each row. Lines end in CR LF.
 std::string csv_text(const std::vector<std::string>& names, const std::vector<std::vector<Json>>& rows);
 
 struct CsvRow {

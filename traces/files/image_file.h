@@ -1,4 +1,4 @@
-// PNG and JPEG files of textures.
+// PNG and JPEG files of textures, and PNG files of pictures.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ TextureImage decode_image(std::string_view bytes, const std::string& where, std:
 // no texels.
 std::string encode_png(const TextureImage& image);
 
-// The same of RGB: three bytes for each pixel, row 0 on top.
+// The bytes of a PNG file that stores `rgb` unchanged: three bytes for each pixel, row 0 on top.
 std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace beampipe

@@ -151,8 +151,7 @@ TEST(AlphaMask, APixelThatPassesInPartIsLookedUpInQuarters) {
   const Masked found = masked(ShadedScene(scene.trace), 256, AlphaPlaces::one);
   EXPECT_EQ(positions(found.after), 64 * 128);
   for (const Fragment& fragment : found.after)
-    for (std::size_t s = 0; s < 256; ++s)
-      EXPECT_EQ(fragment.mask.test(s) && patterns[s / 32].x[s % 32] >= 128, false) << s;
+    for (std::size_t s = 0; s < 256; ++s) EXPECT_FALSE(fragment.mask.test(s) && patterns[s / 32].x[s % 32] >= 128) << s;
 }
 
 // Of a cutout without mixed positions, the area shrinks by the positions' share.

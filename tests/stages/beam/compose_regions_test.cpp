@@ -734,15 +734,16 @@ TEST(Regions, ThousandsOfLayersStayBounded) {
 // ---- What they are charged ----
 
 // A layer that covers a pixel of one region is tested and blended once, and needs no mask.
+StageCounters counters_of_whole_layers(int layers) {
+  OnePixel pixel;
+  for (int i = 0; i < layers; ++i) pixel.everywhere(over(), {1, 1, 1, 0.5f});
+  pixel.compose();
+  return pixel.counters;
+}
+
 TEST(Regions, AWholeLayerCostsAsMuchAsOneSample) {
-  const auto operations = [](int layers) {
-    OnePixel pixel;
-    for (int i = 0; i < layers; ++i) pixel.everywhere(over(), {1, 1, 1, 0.5f});
-    pixel.compose();
-    return pixel.counters.ops;
-  };
   // Of each of four channels: from fp16 and to it, two products and a sum; one minus alpha for each, too.
-  const OperationCounts one = operations(1), two = operations(2);
+  const OperationCounts one = counters_of_whole_layers(1).ops, two = counters_of_whole_layers(2).ops;
   EXPECT_EQ(two.convert - one.convert, 8u);
   EXPECT_EQ(two.mul_add - one.mul_add, 8u);
   EXPECT_EQ(two.add - one.add, 8u);
@@ -764,13 +765,8 @@ TEST(Regions, AWholeLayerWritesNoPlanes) {
 
 // A whole fragment, the pixel's word, its region and a link of two bytes.
 TEST(Regions, AWholeLayerReadsNoPositions) {
-  const auto read = [](int layers) {
-    OnePixel pixel;
-    for (int i = 0; i < layers; ++i) pixel.everywhere(over(), {1, 1, 1, 0.5f});
-    pixel.compose();
-    return pixel.counters.bytes_read;
-  };
-  EXPECT_EQ(read(3) - read(2), (2 + 3 + 16) + kPixelWordBytes + kRegionBytes + 2);
+  const std::uint64_t two = counters_of_whole_layers(2).bytes_read, three = counters_of_whole_layers(3).bytes_read;
+  EXPECT_EQ(three - two, (2 + 3 + 16) + kPixelWordBytes + kRegionBytes + 2);
 }
 
 // Two regions and two chunks of positions, of which one fits on chip: three links are read, three chunks written, and

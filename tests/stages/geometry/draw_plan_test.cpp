@@ -513,7 +513,7 @@ TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
   EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.5f; })) << "0.5 and 0.5 are 1";
   EXPECT_TRUE(needs([](Draw& draw, Places&) {
     draw.state.depth.bias.constant = 0.75f, draw.state.depth.function = Compare::less_equal;
-  })) << "0.5 and 0.75 are 1, too, where depths are stored";
+  })) << "0.5 and 0.75 are stored as 1, too";
   EXPECT_FALSE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.25f; }));
   // Window depth rises from 0.5 to 0.75 over 8 pixels: by 1/32 in each. Eight times that more is 1.
   EXPECT_FALSE(needs([&](Draw& draw, Places& places) { places[1].z = 0.5f, draw.state.depth.bias.slope = 7; }));
