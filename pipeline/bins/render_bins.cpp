@@ -35,7 +35,7 @@ TileGrid bin_grid(const FrameContext& context, const BinPlan& plan, int bin_size
   return plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
 }
 
-// All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
+// Those of the pre-pass, and BinPlan::stages for this frame.
 std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
   std::vector<Stage> stages;
   if (plan.has_prepass) {

@@ -19,8 +19,9 @@ namespace beampipe {
 
 // How a technique renders its bins.
 struct BinPlan {
-  // Of a bin, in the order of the pipeline. Those for alpha are added where they belong; `blend` is left out of frames
-  // that blend nothing.
+  // Of a bin, in the order in which they run. Those for alpha are added where they belong; `blend` is left out of
+  // frames without translucent triangles, unless they keep the API's order. A stage that runs twice stands where most
+  // of it does.
   std::vector<StageId> stages;
   Framebuffer framebuffer;  // with the size of the bins, which FrameInput::tile_size overrides
   // The first pass over the geometry writes depth alone. Its stages (vertex_setup, sample_raster, alpha_test for

@@ -84,7 +84,7 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options, const S
   std::optional<FrameMotion> motion;
   if (options.motion) motion.emplace(context, history);
   const Framebuffer framebuffer = msaa_framebuffer(options);
-  BinPlan plan{.stages = forward_stages(framebuffer, options.samples, job.run.memory),
+  BinPlan plan{.stages = forward_stages(framebuffer, options, job.run.memory),
                .framebuffer = framebuffer,
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
@@ -115,9 +115,12 @@ Technique technique_of(const MsaaOptions& options, const Sampling& sampling) {
 
 }  // namespace
 
-std::vector<StageId> forward_stages(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory) {
-  std::vector<StageId> stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::blend};
-  if (needs_resolve(framebuffer, samples, memory)) stages.push_back(StageId::resolve);
+std::vector<StageId> forward_stages(const Framebuffer& framebuffer, const MsaaOptions& options,
+                                    const MemoryParameters& memory) {
+  using enum StageId;
+  std::vector<StageId> stages = options.prepass ? std::vector{sample_raster, depth_test, blend, shade}
+                                                : std::vector{sample_raster, shade, depth_test, blend};
+  if (needs_resolve(framebuffer, options.samples, memory)) stages.push_back(StageId::resolve);
   return stages;
 }
 

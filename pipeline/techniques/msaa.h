@@ -38,7 +38,8 @@ struct MsaaOptions {
 Technique msaa_at(const std::vector<glm::ivec2>& places);
 
 // The stages of a bin. One sample in memory is the picture's pixel already; all others are resolved.
-std::vector<StageId> forward_stages(const Framebuffer& framebuffer, int samples, const MemoryParameters& memory);
+std::vector<StageId> forward_stages(const Framebuffer& framebuffer, const MsaaOptions& options,
+                                    const MemoryParameters& memory);
 
 // The depth test of forward shading, with colours. `sampling` must outlive it.
 DepthTestUnit forward_surface(Bin& bin, const Sampling& sampling, const MsaaOptions& options);

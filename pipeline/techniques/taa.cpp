@@ -37,7 +37,7 @@ Framebuffer taa_framebuffer(TaaShading shading) {
 }
 
 std::vector<StageId> stages_of(TaaShading shading, const MemoryParameters& memory) {
-  std::vector<StageId> forward = forward_stages(taa_framebuffer(shading), 1, memory);
+  std::vector<StageId> forward = forward_stages(taa_framebuffer(shading), kForward, memory);
   switch (shading) {
     case TaaShading::visibility:
       return {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,

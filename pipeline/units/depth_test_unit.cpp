@@ -101,7 +101,10 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
   const auto keep_visible = main_stage_ == StageId::shade ? depth_test_in_shader : depth_test_equal;
   keep_visible(samples(), testing.timed(), surface_, fragments, accesses_);
   memory_.test_equal(accesses_, testing.counters);
-  if (!translucent.empty()) blend_fragments(translucent);
+  if (translucent.empty()) return;
+  blend_fragments(translucent);
+  for (std::size_t i = 0; i < translucent.size(); ++i)
+    if (accesses_[i].passed != 0) fragments.push_back(translucent[i]);
 }
 
 std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, StageCounters& resolving, ResolveSpace space) const {

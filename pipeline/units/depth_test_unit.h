@@ -48,7 +48,8 @@ class DepthTestUnit {
   // memory.
   void blend_into(TileSurface& layer, std::vector<SampleFragment>& fragments);
 
-  // Leaves of each fragment the samples that have the stored depth, and drops fragments without any.
+  // Leaves of each fragment the samples that have the stored depth, and drops fragments without any. Translucent ones,
+  // which it blends, follow the others if any of their samples passes.
   void test_equal(std::vector<SampleFragment>& fragments);
 
   // After a depth pre-pass, tests are a part of stage `shade`.

@@ -21,7 +21,7 @@ Surface translucent_layer(std::uint32_t samples);
 // Draws the bin's translucent triangles in the order of draws. They are tested against the depth that opaque triangles
 // left, do not write it, and are shaded in 2x2 quads. Call it when the opaque picture is finished: the depth test's
 // surface has the layer from then on. Returns the layer's mean in each pixel of the tile: linear RGB, times alpha, and
-// alpha. Empty if nothing in the frame is translucent. Stages: sample_raster, shade, blend.
+// alpha. Empty if nothing in the frame is translucent. Stages: sample_raster, blend, shade.
 std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, ShadeAt at);
 
 // Puts a layer over pixels: RGB, and A, the part that geometry covers. `layer` may be empty, and `observers`

@@ -15,10 +15,7 @@ namespace beampipe {
 namespace {
 
 // At equal depth, does the draw hide earlier ones?
-bool wins_ties(Compare function) {
-  return function == Compare::less_equal || function == Compare::greater_equal || function == Compare::equal ||
-         function == Compare::always;
-}
+bool wins_ties(Compare function) { return passes_equal(function) || function == Compare::always; }
 
 enum class Part { behind, tested, in_front };
 

@@ -17,19 +17,43 @@ cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz
 # The names of techniques and their options, from the tables of docs/techniques.md.
 sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -oE '[a-z0-9.-]+[=:]?' | sort -u |
   sed 's/.*/"&"/' >"$TMPDIR/spec.dict"
-# The keys and names of JSON files, from their readers, and a few other words.
+# The keys and names of JSON files, from their readers, a few other words, and the NUL that ends a part of an input.
 {
-  grep -rohE '"[a-z][a-z0-9_]*"' tools/{evaluate,report,sweep,claims} docs/examples/*.json | sort -u
-  printf '%s\n' '{}' '[]' -1 1e308 1e-308 18446744073709551615 null true ../
-} | sed 's/"/\\"/g; s/.*/"&"/' | tee "$TMPDIR/config.dict" >"$TMPDIR/results.dict"
+  {
+    grep -rohE '"[a-z][a-z0-9_.-]*"' --include=*.{cpp,h,json} tools/{evaluate,files,inspect,report,sweep,claims} \
+      stages/cost pipeline/memory docs/examples | sort -u
+    printf '%s\n' '"h.json"' '"memory_system.' '"hardware.' '{}' '[]' -1 1e308 1e-308 18446744073709551615 null true ../
+  } | sed 's/"/\\"/g; s/.*/"&"/'
+  echo '"\x00"'
+} | tee "$TMPDIR/config.dict" >"$TMPDIR/results.dict"
+# Inputs to start from: the corpus, a sweep with its hardware, and results of the program, if it is built.
+seeds=$TMPDIR/seeds
+cp -r tests/fuzz/corpus "$seeds"
+sed 's/"hardware.json"/"h.json"/' docs/examples/sweep.json | cat - <(printf '\0') docs/examples/hardware.json >"$seeds/config/grid"
+mkdir "$seeds/results"
+program=build/release/tools/beampipe
+if [[ -x $program ]]; then
+  trace=$PWD/traces/samples/two_quads.json
+  "$program" compare "$trace" -t beam -o "$TMPDIR/compared" --inspect-worst 1 >/dev/null
+  echo '{"beampipe_sweep":1,"traces":["'"$trace"'"],"techniques":["msaa:1"]}' >"$TMPDIR/plan.json"
+  "$program" sweep "$TMPDIR/plan.json" -o "$TMPDIR/swept" >/dev/null
+  in_one_line() { python3 -c 'import json, sys; print(json.dumps(json.load(sys.stdin), separators=(",", ":")))' <"$1"; }
+  {
+    in_one_line "$TMPDIR/compared/report.json"
+    printf '\0'
+    in_one_line "$TMPDIR/compared/beam/inspections.json"
+    printf '\0\0'
+    in_one_line "$TMPDIR"/swept/cells/*.json
+  } >"$seeds/results/compared"
+fi
 # Runs one target, and then prints what it said.
 run_target() {
   local target=$1 seconds=$2 found=build/fuzz/found/$1 dictionary=tests/fuzz/$1.dict options=() said status=0
   [[ ! -e $TMPDIR/$target.dict ]] || dictionary=$TMPDIR/$target.dict
   [[ ! -e $dictionary ]] || options=(-dict="$dictionary")
   mkdir -p "$found"
-  said=$(build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" "${options[@]}" \
-    -max_total_time="$seconds" -max_len=65536 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
+  said=$(build/fuzz/tests/fuzz/"${target}_fuzz" "$found" "$TMPDIR/seeds/$target" "${options[@]}" \
+    -max_total_time="$seconds" -max_len=98304 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
     -print_final_stats=1 -verbosity=0 2>&1) || status=$?
   printf '== %s: %s s\n%s\n' "$target" "$seconds" "$said"
   return "$status"

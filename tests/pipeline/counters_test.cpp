@@ -1,10 +1,12 @@
 // Counters of frames that can be counted by hand.
 
+#include "pipeline/bins/timeline.h"
 #include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 
 namespace beampipe::counters_test {
@@ -34,6 +36,39 @@ TEST(Counters, ShadingRunsInWholeQuads) {
   for (const char* spec : {"msaa:8", "msaa:8,prepass", "acaa:8"}) {
     EXPECT_EQ(shading(spec).lanes_used, 10u) << spec;
     EXPECT_EQ(shading(spec).lanes_issued, 6u * 4) << spec;
+  }
+}
+
+// One sheet covers 8 x 8 pixels, of which an opaque wall in front of it hides half.
+TEST(Counters, APrepassLeavesTranslucentFragmentsThatAreSeen) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 4, 8, 0.25, unlit_material(glm::vec4(1.0f)));
+  scene.add_rectangle(0, 0, 8, 8, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  for (const char* spec : {"msaa:1,prepass", "taa:1,shading=forward"}) {
+    const FrameResult result = render(spec, scene.trace);
+    EXPECT_EQ(stage_of(result, "blend").items_out, 32u) << spec;
+    EXPECT_EQ(stage_of(result, "shade").items_in, 64u) << spec << ": each pixel is shaded once";
+  }
+}
+
+TEST(Counters, StagesAreListedInTheOrderInWhichTheyRun) {
+  const Trace trace = random_surfaces(24, 16, 60, 5);
+  for (const std::string& spec : example_specs()) {
+    Timeline timeline;
+    FrameInput run{1};
+    run.tile_size = 32;  // one bin
+    const FrameResult result = parse_technique(spec).render(trace, 0, run, FrameSinks{.timeline = &timeline});
+    std::vector<std::string> ran, listed;
+    for (const Timeline::Event& event : timeline.events())
+      if (event.tile && std::ranges::find(ran, event.name) == ran.end()) ran.push_back(event.name);
+    for (const StageCounters& stage : result.stages)
+      if (const std::string name(name_of(stage.stage)); std::ranges::find(ran, name) != ran.end())
+        listed.push_back(name);
+    if (spec == "acaa:4,double=saturate") {  // the background is the first that it accumulates
+      std::erase(ran, "accumulate"), std::erase(listed, "accumulate");
+    }
+    EXPECT_EQ(listed, ran) << spec;
+    EXPECT_GE(ran.size(), 2u) << spec;
   }
 }
 

@@ -1,6 +1,6 @@
 // Pictures and counters stay what they are until someone changes them on purpose. tests/tools/digests.txt has a line
-// for every scene and technique: a digest of the picture, sums of counters, and a digest of all counters.
-// BEAMPIPE_WRITE_DIGESTS=1 writes the file, and says what changed.
+// for every scene, and two samples, with every technique: a digest of the picture, sums of counters, and a digest of
+// all counters. BEAMPIPE_WRITE_DIGESTS=1 writes the file, and says what changed.
 
 #include <iostream>
 
@@ -38,17 +38,15 @@ std::string line_of(const FrameResult& result) {
 // Lines by "scene spec".
 std::map<std::string, std::string> found_lines() {
   std::map<std::string, std::string> lines;
-  for (const SceneKind& kind : scene_kinds()) {
-    const Trace trace = make_scene(kind.name, {.triangles = 1000, .width = 32, .height = 19});
+  const auto add = [&](std::string_view name, const Trace& trace) {
     for (const std::string& spec : example_specs())
-      lines[std::string(kind.name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
-  }
-  for (const char* sample : {"captured_quads", "program_quad"}) {  // with fragment shaders of their own
-    const Trace trace =
-        read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / (std::string(sample) + ".json"));
-    for (const std::string& spec : example_specs())
-      lines[std::string(sample) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
-  }
+      lines[std::string(name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
+  };
+  for (const SceneKind& kind : scene_kinds())
+    add(kind.name, make_scene(kind.name, {.triangles = 1000, .width = 32, .height = 19}));
+  const std::filesystem::path samples = std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples";
+  for (const std::string sample : {"captured_quads", "program_quad"})  // with fragment shaders of their own
+    add(sample, read_trace(samples / (sample + ".json")));
   // Pixels in memory, whose caches see the order in which pixels are visited, with flat surfaces and with others.
   FrameInput in_memory{2};
   in_memory.memory.framebuffer = Place::in_memory;

@@ -14,7 +14,6 @@
 #include "tools/evaluate/captured_colors.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/machine_memory.h"
-#include "tools/files/image_io.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "traces/files/image_file.h"

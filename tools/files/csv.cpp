@@ -48,8 +48,7 @@ std::vector<CsvRow> rows_of(const std::string& text, const std::filesystem::path
   return rows;
 }
 
-}  // namespace
-
+// In quotes where it has to be.
 std::string csv_field(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
@@ -59,6 +58,8 @@ std::string csv_field(const Json& value) {
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted.append("\"");
 }
+
+}  // namespace
 
 std::string csv_text(const std::vector<std::string>& names, const std::vector<std::vector<Json>>& rows) {
   std::string text;

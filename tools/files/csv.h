@@ -1,4 +1,4 @@
-// Fields of CSV files, by RFC 4180.
+// CSV files, by RFC 4180.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,7 @@
 
 namespace beampipe {
 
-// A value as a field: in quotes where it has to be; null is empty.
-std::string csv_field(const Json& value);
-
-// A line of names, and one for each row. Lines end in CR LF.
+// A line of names, and one for each row. Values are in quotes where they have to be; null is empty. Lines end in CR LF.
 std::string csv_text(const std::vector<std::string>& names, const std::vector<std::vector<Json>>& rows);
 
 struct CsvRow {

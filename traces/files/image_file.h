@@ -1,4 +1,4 @@
-// PNG and JPEG files of textures, and PNG files of pictures.
+// PNG and JPEG files of textures, and PNG files of bytes.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ TextureImage decode_image(std::string_view bytes, const std::string& where, std:
 // no texels.
 std::string encode_png(const TextureImage& image);
 
-// The bytes of a PNG file that stores `rgb` unchanged: three bytes for each pixel, row 0 on top.
+// The bytes of a PNG file that stores `rgb` unchanged: three bytes for each pixel, row 0 on top. Throws
+// std::runtime_error if there are no pixels.
 std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace beampipe

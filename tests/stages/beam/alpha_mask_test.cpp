@@ -141,7 +141,7 @@ TEST(AlphaMask, FineTexelsLeaveTheirMean) {
   }
 }
 
-// Eight texels to a pixel, of which four pass: half of the pixel, but all or nothing of each of its quarters.
+// A pixel has 8 x 8 texels, of which the left half pass: all of two of its quarters, and nothing of the others.
 TEST(AlphaMask, APixelThatPassesInPartIsLookedUpInQuarters) {
   SurfaceTrace scene(8, 8);
   TextureImage image = filled_image(64, 64, {255, 255, 255, 255});

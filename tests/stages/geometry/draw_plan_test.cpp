@@ -297,7 +297,7 @@ TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
   EXPECT_EQ(draws.notes(), expected);
 }
 
-// Which pixels a cutout leaves is known when it is drawn, and translucent triangles let others show.
+// Which pixels a cutout leaves is known only when it is drawn; translucent triangles let others show.
 TEST(DrawPlan, OnlyOpaqueTrianglesWriteDepthsThatOthersRepeat) {
   for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
     Draws draws;
@@ -314,12 +314,14 @@ TEST(DrawPlan, OnlyOpaqueTrianglesWriteDepthsThatOthersRepeat) {
 
 TEST(DrawPlan, WhatPassesAtEqualDepthHidesEarlierDraws) {
   using enum Compare;
-  for (const Compare function : {never, less, equal, less_equal, greater, not_equal, greater_equal, always}) {
+  const std::pair<Compare, bool> cases[] = {{never, false},        {less, false},    {equal, true},
+                                            {less_equal, true},    {greater, false}, {not_equal, false},
+                                            {greater_equal, true}, {always, true}};
+  for (const auto& [function, passes] : cases) {
     Draws draws;
     draws.add(less).state.depth.near = 0.25f;  // so that depths are placed
     draws.add(function);
     draws.add(less);
-    const bool passes = function == equal || function == less_equal || function == greater_equal || function == always;
     EXPECT_EQ(draws.plan().placements[1].last_wins, passes) << static_cast<int>(function);
   }
 }
@@ -513,7 +515,7 @@ TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
   EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.5f; })) << "0.5 and 0.5 are 1";
   EXPECT_TRUE(needs([](Draw& draw, Places&) {
     draw.state.depth.bias.constant = 0.75f, draw.state.depth.function = Compare::less_equal;
-  })) << "0.5 and 0.75 are stored as 1, too";
+  })) << "0.5 + 0.75 is stored as 1, as are other depths beyond it";
   EXPECT_FALSE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.25f; }));
   // Window depth rises from 0.5 to 0.75 over 8 pixels: by 1/32 in each. Eight times that more is 1.
   EXPECT_FALSE(needs([&](Draw& draw, Places& places) { places[1].z = 0.5f, draw.state.depth.bias.slope = 7; }));

@@ -60,6 +60,27 @@ TEST(OrderedReference, DrawsWithoutColorOnlyMark) {
   EXPECT_FLOAT_EQ(found.b, 0.25f);
 }
 
+// The left half is in front of the second draw, which marks it with 1 and the rest with 2.
+TEST(OrderedReference, StencilTellsSamplesThatFailFromThoseThatPass) {
+  Stream stream;
+  add_left_of(stream.triangles, 128, -0.75f), stream.add({1, 0, 0});
+  add_everywhere(stream.triangles, -0.5f);
+  stream.add({0, 0, 0}).stencil = Stencil{.function = Compare::always,
+                                          .reference = 2,
+                                          .depth_fail = StencilOperation::increment,
+                                          .pass = StencilOperation::replace};
+  for (const std::uint32_t mark : {1u, 2u}) {
+    add_everywhere(stream.triangles, -0.875f);
+    DrawState& state = stream.add(mark == 1 ? glm::vec3(0, 0.25f, 0) : glm::vec3(0, 0, 0.5f));
+    state.depth.test = false, state.blend = kAdd;
+    state.stencil = Stencil{.function = Compare::equal, .reference = mark};
+  }
+  const glm::vec4 found = stream.picture();
+  EXPECT_FLOAT_EQ(found.r, 0.5f);
+  EXPECT_FLOAT_EQ(found.g, 0.125f);
+  EXPECT_FLOAT_EQ(found.b, 0.25f);
+}
+
 TEST(OrderedReference, DepthsAreLimited) {
   Stream stream;
   add_everywhere(stream.triangles, -1.5f), stream.add({1, 0, 0});

@@ -34,9 +34,10 @@ TEST_F(Csv, QuotesHoldCommasLinesAndQuotes) {
 
 TEST_F(Csv, FieldsAreReadAsTheyWereWritten) {
   for (const std::string text : {"plain", "a,b", "\"quoted\"", "two\nlines", ""}) {
-    const auto rows = read("a,b\nx," + csv_field(text) + "\n");
-    ASSERT_EQ(rows.size(), 1u);
-    EXPECT_EQ(rows[0].fields[1], text);
+    const auto rows = read(csv_text({"a", "b"}, {{"x", text}, {1.5, nullptr}}));
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].fields, (Fields{"x", text}));
+    EXPECT_EQ(rows[1].fields, (Fields{"1.5", ""}));
   }
 }
 
