@@ -394,6 +394,7 @@ mutants=(  # file | text as it is | broken
   'stages/data/region_pixels.h|/ kChunkBytes + regions)|/ kChunkBytes + planes_for(regions))'
   'stages/data/region_pixels.h|first_words(words)|first_words(1)'
   'stages/data/ordered_tile.h|is_drawn(depth.size(), false)|is_drawn(depth.size(), true)'
+  'pipeline/techniques/msaa.cpp|std::vector{sample_raster, depth_test, blend, shade}|std::vector{sample_raster, shade, depth_test, blend}'
   'pipeline/units/depth_test_unit.cpp|accesses_[i].passed != 0) fragments.push|false) fragments.push'
   'pipeline/units/depth_test_unit.cpp|translucent.size(); ++i)|translucent.size() / 2; ++i)'
   'pipeline/units/ordered_unit.cpp|shade.counts_centroids();|'

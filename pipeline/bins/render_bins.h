@@ -20,8 +20,8 @@ namespace beampipe {
 // How a technique renders its bins.
 struct BinPlan {
   // Of a bin, in the order in which they run. Those for alpha are added where they belong; `blend` is left out of
-  // frames without translucent triangles, unless they keep the API's order. A stage that runs twice stands where most
-  // of it does.
+  // frames without translucent triangles, unless they keep the API's order. A stage that runs twice is listed
+  // where most of it runs.
   std::vector<StageId> stages;
   Framebuffer framebuffer;  // with the size of the bins, which FrameInput::tile_size overrides
   // The first pass over the geometry writes depth alone. Its stages (vertex_setup, sample_raster, alpha_test for

@@ -48,13 +48,13 @@ class DepthTestUnit {
   // memory.
   void blend_into(TileSurface& layer, std::vector<SampleFragment>& fragments);
 
-  // Leaves of each fragment the samples that have the stored depth, and drops fragments without any. Translucent ones,
-  // which it blends, follow the others if any of their samples passes.
+  // Leaves of each opaque fragment the samples that have the stored depth, and drops fragments without any. Translucent
+  // fragments are blended, and those of which a sample passes follow with all their samples.
   void test_equal(std::vector<SampleFragment>& fragments);
 
   // After a depth pre-pass, tests are a part of stage `shade`.
   void tests_in_shader() { main_stage_ = StageId::shade; }
-  const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test
+  const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test, or of the last blending
 
   // SampleRasterUnit::pass does it.
   void end_pass() {

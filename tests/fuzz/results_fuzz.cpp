@@ -126,7 +126,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const FuzzFolder folder;
   static const bool pictures_are_there = [] {
     folder.write("beam/frame_0000.png", kColors);
-    folder.write("beam/frame_0000.exr", encode_exr(Image{2, 1, {0, 0.5f, 1, 1, INFINITY, NAN, -1, 0}}));
+    for (const char* name : {"beam/frame_0000.exr", "msaa_1/frame_0000.exr", "reference/frame_0000.exr"})
+      folder.write(name, encode_exr(Image{2, 1, {0, 0.5f, 1, 1, INFINITY, NAN, -1, 0}}));
     folder.write("beam/frame_0000_counters.exr", encode_exr({2, 1, {{"fragments", {1, NAN}}}}));
     return true;
   }();

@@ -26,18 +26,25 @@ sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -o
   } | sed 's/"/\\"/g; s/.*/"&"/'
   echo '"\x00"'
 } | tee "$TMPDIR/config.dict" >"$TMPDIR/results.dict"
-# Inputs to start from: the corpus, a sweep with its hardware, and results of the program, if it is built.
+# Inputs to start from: the corpus, a sweep with its hardware, and results that the program makes now.
 seeds=$TMPDIR/seeds
 cp -r tests/fuzz/corpus "$seeds"
-sed 's/"hardware.json"/"h.json"/' docs/examples/sweep.json | cat - <(printf '\0') docs/examples/hardware.json >"$seeds/config/grid"
-mkdir "$seeds/results"
-program=build/release/tools/beampipe
-if [[ -x $program ]]; then
-  trace=$PWD/traces/samples/two_quads.json
+{
+  sed 's/"hardware.json"/"h.json"/' docs/examples/sweep.json
+  printf '\0'
+  cat docs/examples/hardware.json
+} >"$seeds/config/grid"
+in_one_line() {
+  python3 -c 'import json, sys; print(json.dumps(json.load(sys.stdin), separators=(",", ":"), ensure_ascii=False))' <"$1"
+}
+if [[ " ${targets[*]} " == *" results "* ]]; then
+  cmake --preset release >/dev/null
+  cmake --build --preset release --parallel "$(nproc)" --target beampipe
+  program=build/release/tools/beampipe trace=$PWD/traces/samples/two_quads.json
+  mkdir -p "$seeds/results"
   "$program" compare "$trace" -t beam -o "$TMPDIR/compared" --inspect-worst 1 >/dev/null
   echo '{"beampipe_sweep":1,"traces":["'"$trace"'"],"techniques":["msaa:1"]}' >"$TMPDIR/plan.json"
   "$program" sweep "$TMPDIR/plan.json" -o "$TMPDIR/swept" >/dev/null
-  in_one_line() { python3 -c 'import json, sys; print(json.dumps(json.load(sys.stdin), separators=(",", ":")))' <"$1"; }
   {
     in_one_line "$TMPDIR/compared/report.json"
     printf '\0'
@@ -45,19 +52,26 @@ if [[ -x $program ]]; then
     printf '\0\0'
     in_one_line "$TMPDIR"/swept/cells/*.json
   } >"$seeds/results/compared"
+  "$program" run "$trace" -t msaa:1 --no-memory-model -o "$TMPDIR/run" >/dev/null
+  in_one_line "$TMPDIR/run/report.json" >"$seeds/results/run"
+fi
+most_bytes=98304  # a seed that is longer would be cut
+if [[ $(find "$seeds" -type f -size +"$most_bytes"c) ]]; then
+  echo "tests/fuzz/run.sh: a seed is longer than $most_bytes bytes" >&2
+  exit 1
 fi
 # Runs one target, and then prints what it said.
 run_target() {
-  local target=$1 seconds=$2 found=build/fuzz/found/$1 dictionary=tests/fuzz/$1.dict options=() said status=0
+  local target=$1 seconds=$2 most_bytes=$3 found=build/fuzz/found/$1 dictionary=tests/fuzz/$1.dict options=() said status=0
   [[ ! -e $TMPDIR/$target.dict ]] || dictionary=$TMPDIR/$target.dict
   [[ ! -e $dictionary ]] || options=(-dict="$dictionary")
   mkdir -p "$found"
   said=$(build/fuzz/tests/fuzz/"${target}_fuzz" "$found" "$TMPDIR/seeds/$target" "${options[@]}" \
-    -max_total_time="$seconds" -max_len=98304 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
+    -max_total_time="$seconds" -max_len=$most_bytes -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
     -print_final_stats=1 -verbosity=0 2>&1) || status=$?
   printf '== %s: %s s\n%s\n' "$target" "$seconds" "$said"
   return "$status"
 }
 export -f run_target
 # Each takes one core.
-printf '%s\n' "${targets[@]}" | xargs --max-procs="$(nproc)" -I{} bash -c 'run_target {} "$0"' "$seconds"
+printf '%s\n' "${targets[@]}" | xargs --max-procs="$(nproc)" -I{} bash -c 'run_target {} "$@"' - "$seconds" "$most_bytes"

@@ -3,6 +3,7 @@
 #include "pipeline/bins/timeline.h"
 #include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
+#include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
@@ -39,11 +40,11 @@ TEST(Counters, ShadingRunsInWholeQuads) {
   }
 }
 
-// One sheet covers 8 x 8 pixels, of which an opaque wall in front of it hides half.
+// One sheet covers 8 x 8 pixels, and an opaque wall, which is drawn later, hides half of it.
 TEST(Counters, APrepassLeavesTranslucentFragmentsThatAreSeen) {
   SurfaceTrace scene(8, 8);
-  scene.add_rectangle(0, 0, 4, 8, 0.25, unlit_material(glm::vec4(1.0f)));
   scene.add_rectangle(0, 0, 8, 8, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  scene.add_rectangle(0, 0, 4, 8, 0.25, unlit_material(glm::vec4(1.0f)));
   for (const char* spec : {"msaa:1,prepass", "taa:1,shading=forward"}) {
     const FrameResult result = render(spec, scene.trace);
     EXPECT_EQ(stage_of(result, "blend").items_out, 32u) << spec;
@@ -51,24 +52,54 @@ TEST(Counters, APrepassLeavesTranslucentFragmentsThatAreSeen) {
   }
 }
 
-TEST(Counters, StagesAreListedInTheOrderInWhichTheyRun) {
-  const Trace trace = random_surfaces(24, 16, 60, 5);
-  for (const std::string& spec : example_specs()) {
-    Timeline timeline;
-    FrameInput run{1};
-    run.tile_size = 32;  // one bin
-    const FrameResult result = parse_technique(spec).render(trace, 0, run, FrameSinks{.timeline = &timeline});
-    std::vector<std::string> ran, listed;
-    for (const Timeline::Event& event : timeline.events())
-      if (event.tile && std::ranges::find(ran, event.name) == ran.end()) ran.push_back(event.name);
-    for (const StageCounters& stage : result.stages)
-      if (const std::string name(name_of(stage.stage)); std::ranges::find(ran, name) != ran.end())
-        listed.push_back(name);
-    if (spec == "acaa:4,double=saturate") {  // the background is the first that it accumulates
-      std::erase(ran, "accumulate"), std::erase(listed, "accumulate");
+// Nothing hides anything, so a depth pre-pass saves no shading.
+TEST(Counters, TranslucentFragmentsAreShadedAlikeWithAPrepass) {
+  Random random(3);
+  SurfaceTrace scene(24, 16);
+  const Material glass = textured_material(scene.add_image(random_image(random, 16, 16)), AlphaMode::blend);
+  scene.add_rectangle(-1, -1, 30, 20, 0.9, unlit_material(glm::vec4(1.0f)));
+  scene.add_rectangle(1.3, 2.2, 14.6, 9.1, 0.75, glass);
+  scene.add_rectangle(7.7, 4.4, 20.5, 15.2, 0.5, glass);
+  scene.add_rectangle(3.1, 7.9, 17.4, 12.8, 0.625, glass);
+  FrameInput run{1};
+  run.memory.modelled = false;  // caches see another order
+  for (const std::string n : {"1", "8", "32"})
+    for (const char* at : {"", ",at=centroid"}) {
+      const auto shading = [&](const std::string& prepass) {
+        return stage_of(parse_technique("msaa:" + n + at + prepass).render(scene.trace, 0, run), "shade");
+      };
+      EXPECT_EQ(shading(",prepass"), shading("")) << n << at;
     }
-    EXPECT_EQ(listed, ran) << spec;
-    EXPECT_GE(ran.size(), 2u) << spec;
+}
+
+// In one bin, whose triangles the raster takes at once.
+void expect_stages_as_they_run(const std::string& spec, const Trace& trace) {
+  Timeline timeline;
+  FrameInput run{1};
+  run.tile_size = 32;
+  const FrameResult result = parse_technique(spec).render(trace, 0, run, FrameSinks{.timeline = &timeline});
+  std::vector<std::string> ran, listed;
+  for (const Timeline::Event& event : timeline.events())
+    if (event.tile && std::ranges::find(ran, event.name) == ran.end()) ran.push_back(event.name);
+  for (const StageCounters& stage : result.stages)
+    if (const std::string name(name_of(stage.stage)); std::ranges::find(ran, name) != ran.end()) listed.push_back(name);
+  if (spec == "acaa:4,double=saturate") {  // it accumulates the background before any fragment
+    std::erase(ran, "accumulate"), std::erase(listed, "accumulate");
+  }
+  EXPECT_EQ(listed, ran) << spec;
+  EXPECT_GE(ran.size(), 2u) << spec;
+}
+
+TEST(Counters, StagesAreListedInTheOrderInWhichTheyRun) {
+  const Trace by_depth = random_surfaces(24, 16, 60, 5);
+  Trace in_order = by_depth;
+  std::vector<Draw>& draws = in_order.frames[0].draws;
+  draws.push_back(draws[0]);
+  draws[1].state.blend = Blend{{BlendFactor::one, BlendFactor::one}, {}, {}};
+  ASSERT_TRUE(needs_api_order(in_order, in_order.frames[0]));
+  for (const std::string& spec : example_specs()) {
+    expect_stages_as_they_run(spec, by_depth);
+    expect_stages_as_they_run(spec, in_order);
   }
 }
 

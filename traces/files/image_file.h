@@ -1,4 +1,4 @@
-// PNG and JPEG files of textures, and PNG files of bytes.
+// PNG and JPEG files of textures, and PNG files of RGB bytes.
 #pragma once
 
 #include <cstdint>
