@@ -29,6 +29,7 @@ test=(
   python3-skimage                   # another SSIM
   python3-pip python3-venv          # installs the wheel
   python3-nbconvert python3-ipykernel  # runs the notebook
+  git make  # for the list of sources, and for projects outside the tree
   libgtest-dev libbenchmark-dev
   libvulkan-dev mesa-vulkan-drivers  # holds shaders to Mesa's lavapipe
   clang libclang-rt-dev             # fuzz targets

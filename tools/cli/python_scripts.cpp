@@ -16,7 +16,8 @@ std::filesystem::path scripts_folder(const std::string& installed, const std::st
 }
 
 void become_python(const std::vector<std::string>& arguments) {
-  std::vector<std::string> command = {BEAMPIPE_PYTHON};
+  // On a full disk, half of a compiled module would stay, and Python would believe it.
+  std::vector<std::string> command = {BEAMPIPE_PYTHON, "-B"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());

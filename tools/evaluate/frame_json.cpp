@@ -271,7 +271,8 @@ Form<FrameOf> make_frame_form() {
                "Statistics of each counter of pixels, by name.")
       .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),
                "Work that was not done, by name (`beampipe counters`).")
-      .written("stages", member(&Frame::stages), form::list(stage_form()), "The stages, in the order in which they run.")
+      .written("stages", member(&Frame::stages), form::list(stage_form()),
+               "The stages, in the order in which they run.")
       .added("modelled_ms", form::by_name(modelled_form()).schema, "Modelled times, by implementation.")
       .added("bin_spread", spread_form().schema, "How unevenly bins fill the cores.")
       .added("energy_mj", energy_schema(), "Modelled energy, in millijoules: the sum over the stages.");

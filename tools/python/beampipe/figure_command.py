@@ -1,5 +1,6 @@
 """beampipe figure: a figure for a paper from the folders of `beampipe compare`."""
 import argparse
+import logging
 import pathlib
 import sys
 
@@ -61,6 +62,7 @@ def parse(words):
 
 
 def work(arguments):
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # or it would say that it cannot keep a list of fonts
     try:
         from . import figures
     except ModuleNotFoundError as missing:
