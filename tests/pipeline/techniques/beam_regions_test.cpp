@@ -5,6 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 #include "tests/simd/random.h"
+#include "tests/stages/surface_scene.h"
 #include "tests/thorough.h"
 
 namespace beampipe::beam_regions_test {
@@ -147,6 +148,24 @@ TEST(BeamRegions, QuartersOfPixelsAreExact) {
   expect(10, 0.25f * red + 0.25f * clear + 0.5f * blue);
   expect(12, 0.25f * (0.5f * clear + 0.5f * blue) + 0.75f * clear);
   expect(14, clear);
+}
+
+// Two triangles cover an eighth of pixel (4, 4) each. Where a pixel is 12 texels wide, that is a square whose side is
+// sqrt(1/8) x 12 = 4.2 texels. In the level of 4 x 4 texels, black and white squares of 2 x 2 are grey; in finer ones
+// they are not.
+TEST(BeamRegions, TexelsAreAsSmallAsTheFragment) {
+  SurfaceTrace scene(kSize, kSize);
+  TextureImage squares = filled_image(16, 16, {255, 255, 255, 255});
+  for (std::size_t i = 0; i < squares.texels.size(); ++i)
+    if ((i % 16 / 2 + i / 32) % 2 == 0) squares.texels[i] = {0, 0, 0, 255};
+  Material material = textured_material(scene.add_image(squares), AlphaMode::blend);
+  material.base_texture->minify = Filter::nearest, material.base_texture->mip = MipFilter::nearest;
+  scene.add_rectangle(4, 4, 4.5, 4.5, 0.5, material);
+  scene.mesh().uvs[0] = {{0, 0}, {0.375f, 0}, {0.375f, 0.375f}, {0, 0.375f}};
+  scene.frame().draws[0].state.blend = blend_of(BlendFactor::one, BlendFactor::one);
+  ASSERT_TRUE(needs_api_order(scene.trace, scene.frame()));
+  const Image image = picture("beam:filter=sampler", scene.trace);
+  EXPECT_NEAR(pixel(image, 4, 4).r, scene.frame().background.r + 0.25 * 0.5, 1e-3);
 }
 
 TEST(BeamRegions, FramesWithoutAreaHaveTheClearedColour) {
