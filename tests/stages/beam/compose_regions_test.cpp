@@ -240,7 +240,8 @@ TEST(Regions, DepthsAreLimitedToTheRange) {
   RopRule rule;
   rule.depth = Compare::equal;
   other.everywhere(rule, kRed, 0.25f);
-  EXPECT_EQ(other.compose().r, 1.0f);
+  other.everywhere(plain(), kGreen, 0.0f);
+  EXPECT_EQ(other.compose(), kRed) << "what lies on the far plane is not nearer than what was limited to it";
 }
 
 TEST(Regions, ClearsSetDepthAndStencil) {
@@ -543,6 +544,27 @@ TEST(Regions, TooManyRegionsBecomeOneOfThoseThatAreAlike) {
   ASSERT_EQ(std::ranges::count_if(pixel.regions, is_two), 1);
   EXPECT_NEAR(std::ranges::find_if(pixel.regions, is_two)->color[0], 3.0 / 17 + 0.01, 0.002);
   expect_partition(pixel.regions);
+}
+
+// The two that differ least in colour have different stencil values, so two others become one.
+TEST(Regions, MergesKeepStencilValuesApart) {
+  OnePixel pixel;
+  RopRule rule = without_depth();
+  rule.has_stencil = true;
+  for (int strip = 0; strip < 17; ++strip) {
+    for (Stencil& stencil : rule.stencil) {
+      stencil.pass = StencilOperation::replace;
+      stencil.reference = strip == 12 ? 1 : 0;
+    }
+    pixel.begin(rule, glm::vec4(glm::vec3(strip == 12 ? 3.0f / 17 + 0.02f : static_cast<float>(strip) / 17), 1));
+    pixel.right_of(15 * strip);
+  }
+  pixel.compose();
+  ASSERT_EQ(pixel.merged, 1);
+  const auto marked = std::ranges::find(pixel.regions, 1, &Region::stencil);
+  ASSERT_NE(marked, pixel.regions.end());
+  EXPECT_NEAR(marked->color[0], 3.0 / 17 + 0.02, kRounding);
+  EXPECT_LT(marked->positions.count(), 24u);
 }
 
 // Strips of 14/256 px, but one of 28, and the last of 18. Numbers 3 and 12 have the same colour and different depths.
