@@ -119,6 +119,11 @@ TEST(TextureMemory, AQuadAsksForASectorOnce) {
   EXPECT_EQ(pixels.texture_sector_bytes, 4 * 32u);
   EXPECT_EQ(pixels.texture_l2_bytes, 32u);
   EXPECT_EQ(pixels.texture_dram_bytes, 32u);
+  trace.materials[0].alpha_mode = AlphaMode::blend;
+  trace.frames[0].draws[0].state.blend = Blend{{BlendFactor::one, BlendFactor::one}, {}, {}};
+  const StageCounters in_order = shade_of("beam", trace);
+  EXPECT_EQ(in_order.texture_bytes, 4 * 4 * 4u) << "in the API's order";
+  EXPECT_EQ(in_order.texture_sector_bytes, 4 * 32u);
 }
 
 // A triangle of one pixel. Techniques with derivatives of the quad shade its four pixels.
