@@ -399,7 +399,6 @@ mutants=(  # file | text as it is | broken
   'pipeline/units/depth_test_unit.cpp|translucent.size(); ++i)|translucent.size() / 2; ++i)'
   'pipeline/units/ordered_unit.cpp|shade.counts_centroids();|'
   'pipeline/units/ordered_unit.cpp|raster.keeps_hidden();|'
-  'pipeline/units/ordered_unit.cpp|surface_.first_observed = bin.observer()->first_sample(sampling);|'
   'pipeline/units/ordered_unit.cpp|memory_.flush(blending.counters);|'
   'pipeline/units/regions_unit.h|std::sqrt(fragment.alpha)|fragment.alpha'
   'pipeline/units/regions_unit.h|++(*shadings_)[fragments[i].pixel];|'

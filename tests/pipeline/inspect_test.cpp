@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/technique_table.h"
+#include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/test.h"
 #include "traces/scenes.h"
@@ -129,6 +130,21 @@ void inspect(const Trace& trace, const std::string& name, unsigned seed, double 
       if (technique.has_weights)
         expect_the_weights(histories[i], weights[std::size_t{pixels[i].y} * image.width + pixels[i].x]);
     }
+  }
+}
+
+// One bin of 8 x 8 pixels has triangles, the other one has none.
+TEST(Inspect, PixelsWithoutTrianglesHaveTheirSamples) {
+  Trace trace = pixel_trace(16, 8, quad(1, 1, 7, 7, 0.5, glm::vec3(1)));
+  const std::vector<PixelAddress> at = {{4, 4}, {12, 4}};
+  for (const bool in_order : {false, true}) {
+    if (in_order) trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::equal};
+    ASSERT_EQ(needs_api_order(trace, trace.frames[0]), in_order);
+    FrameInput run{1};
+    run.tile_size = 8, run.pixels = &at;
+    std::vector<PixelHistory> histories;
+    parse_technique("msaa:8").render(trace, 0, run, {.histories = &histories});
+    for (const PixelHistory& history : histories) EXPECT_EQ(history.positions.size(), 8u) << in_order;
   }
 }
 
