@@ -21,10 +21,8 @@ struct OrderedTile {
   std::size_t samples_per_pixel = 0;
   AccumulatorFormat format = AccumulatorFormat::fp32;  // of colours
   std::uint32_t color_bytes = 0;
-  std::size_t next_clear = 0;  // index into RopRules::clears
-  // Who looks at the pixels; null: nobody. There the first sample has this number.
-  const PixelObservers* observers = nullptr;
-  std::size_t first_observed = 0;
+  std::size_t next_clear = 0;                 // index into RopRules::clears
+  const PixelObservers* observers = nullptr;  // who look at the pixels, whose positions are the samples; null: nobody
 
   OrderedTile(const Tile& tile, std::size_t of_pixel, float clear_depth, bool has_stencil, const glm::vec4& clear_color)
       : depth(tile.pixels() * of_pixel, clear_depth),

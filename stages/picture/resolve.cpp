@@ -177,8 +177,7 @@ std::vector<glm::vec4> resolve(const OrderedTile& surface, std::size_t pixels, c
       }
       sum += color;
       drawn += surface.is_drawn[pixel * samples + s];
-      if (observer)
-        observer->adds_samples(kNobody, surface.first_observed + s, surface.first_observed + s + 1, weight, background);
+      if (observer) observer->adds_samples(kNobody, s, s + 1, weight, background);
     }
     glm::dvec3 mean = sum * share;
     if (observer && space == ResolveSpace::reinhard) observer->scales(1.0 / (1.0 - luminance(&mean.x)));

@@ -24,7 +24,7 @@ void ordered_blend(const SampledTriangles& in, const RopRules& rules, const Colo
     if (&rule != last) last = &rule, cost = stored_color_cost(rule, channels);
     const std::uint32_t cell = cell_number(fragment, tile, grid);
     PixelObserver* const observer = observer_at(surface.observers, cell / cells);
-    const std::size_t first = surface.first_observed + cell % cells * samples;
+    const std::size_t first = cell % cells * samples;
     for (std::uint32_t rest = fragment.mask; rest != 0; rest &= rest - 1) {
       const auto s = static_cast<std::size_t>(std::countr_zero(rest));
       const std::size_t at = cell * samples + s;

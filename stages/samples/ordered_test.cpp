@@ -105,8 +105,7 @@ void ordered_test(const SampledTriangles& in, const RopRules& rules, StageCounte
     if (read != 0 || written != 0) accesses.push_back({cell, fragment.triangle, read, written});
     const std::size_t pixel = cell / cells;
     if (PixelObserver* const observer = observer_at(surface.observers, pixel))
-      observer->contends(fragment.triangle, surface.first_observed + cell % cells * samples, fragment.mask & ~passed,
-                         0);
+      observer->contends(fragment.triangle, cell % cells * samples, fragment.mask & ~passed, 0);
     if (passed == 0 || !rule.writes_color()) continue;
     fragments[left] = fragment;
     fragments[left++].mask = passed;

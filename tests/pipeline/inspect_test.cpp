@@ -144,6 +144,7 @@ TEST(Inspect, PixelsWithoutTrianglesHaveTheirSamples) {
     run.tile_size = 8, run.pixels = &at;
     std::vector<PixelHistory> histories;
     parse_technique("msaa:8").render(trace, 0, run, {.histories = &histories});
+    ASSERT_EQ(histories.size(), at.size());
     for (const PixelHistory& history : histories) EXPECT_EQ(history.positions.size(), 8u) << in_order;
   }
 }

@@ -33,7 +33,7 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
                        "target": target}, file)
         environment = {**os.environ, "DISPLAY": display}
         with open(stem + ".log", "wb") as log:
-            process = processes.start([sys.executable, os.path.join(os.path.dirname(__file__), "extract.py"),
+            process = processes.start([sys.executable, "-B", os.path.join(os.path.dirname(__file__), "extract.py"),
                                        stem + ".json"], env=environment, stdin=subprocess.DEVNULL, stdout=log,
                                       stderr=log)
         workers.append((process, stem))
