@@ -29,7 +29,7 @@ OrderedUnit::OrderedUnit(Bin& bin, const Sampling& sampling, AccumulatorFormat f
               [&shader = bin.context.shader](std::uint32_t a, std::uint32_t b) { return shader.same_color(a, b); }) {
   surface_.format = format;
   surface_.color_bytes = color_bytes;
-  if (bin.observer()) surface_.observers = bin.observers();
+  surface_.observers = bin.observers();
 }
 
 void OrderedUnit::draw(ShadeAt at, AlphaCoverage alpha) {

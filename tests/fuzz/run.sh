@@ -38,7 +38,8 @@ in_one_line() {
   python3 -c 'import json, sys; print(json.dumps(json.load(sys.stdin), separators=(",", ":"), ensure_ascii=False))' <"$1"
 }
 if [[ " ${targets[*]} " == *" results "* ]]; then
-  [[ -e build/release/build.ninja ]] || cmake --preset release >/dev/null  # or the options of its build go
+  # To configure it once more would reset the options of its build.
+  [[ -e build/release/build.ninja ]] || cmake --preset release >/dev/null
   cmake --build --preset release --parallel "$(nproc)" --target beampipe
   program=build/release/tools/beampipe trace=$PWD/traces/samples/two_quads.json
   mkdir -p "$seeds/results"

@@ -527,10 +527,11 @@ TEST(Regions, WhatIsNoNumberIsStoredAsZero) {
   EXPECT_EQ(pixel.compose().r, 0);
 }
 
+// Of seventeen strips of 15/256 px, numbers 3 and 12 differ least.
+float gray(int strip) { return strip == 12 ? 3.0f / 17 + 0.02f : static_cast<float>(strip) / 17; }
+
 TEST(Regions, TooManyRegionsBecomeOneOfThoseThatAreAlike) {
   OnePixel pixel;
-  // Seventeen strips of 15/256 px. Numbers 3 and 12 differ least.
-  const auto gray = [](int strip) { return strip == 12 ? 3.0f / 17 + 0.02f : static_cast<float>(strip) / 17; };
   double mean = 0;
   for (int strip = 0; strip < 17; ++strip) {
     pixel.begin(without_depth(), glm::vec4(glm::vec3(gray(strip)), 1));
@@ -556,7 +557,7 @@ TEST(Regions, MergesKeepStencilValuesApart) {
       stencil.pass = StencilOperation::replace;
       stencil.reference = strip == 12 ? 1 : 0;
     }
-    pixel.begin(rule, glm::vec4(glm::vec3(strip == 12 ? 3.0f / 17 + 0.02f : static_cast<float>(strip) / 17), 1));
+    pixel.begin(rule, glm::vec4(glm::vec3(gray(strip)), 1));
     pixel.right_of(15 * strip);
   }
   pixel.compose();
