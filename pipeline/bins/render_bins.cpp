@@ -55,7 +55,7 @@ std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
 
 // The plan's stage that does; none if the plan only looks at its bins.
 StageId rasterizing_stage(const BinPlan& plan) {
-  const auto found = std::find_if(plan.stages.begin(), plan.stages.end(), rasterizes);
+  const auto found = std::ranges::find_if(plan.stages, [](StageId id) { return info_of(id).rasterizes; });
   return found == plan.stages.end() ? StageId::none : *found;
 }
 

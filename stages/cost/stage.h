@@ -97,10 +97,14 @@ struct StageInfo {
   StageGroup group;
   std::string_view color;  // "#rrggbb"; stages that do similar work have similar hues
   // The kinds of units that a description of hardware may name for it.
-  bool can_be_fixed_function, can_be_shader;
+  bool can_be_fixed_function = false, can_be_shader = false;
+  bool rasterizes = false;  // it makes pairs or samples of triangles
+  // It takes what belongs to a pixel in order, so that a pixel has one thread.
+  bool works_by_pixel = false;
   CounterGroups counts;  // the counters that move in some scene
   // What its items and its lanes are; no lanes: empty.
-  std::string_view items_in, items_out, lanes_used = {}, lanes_issued = {};
+  std::string_view items_in, items_out;
+  std::string_view lanes_used = {}, lanes_issued = {};
 };
 
 // In the order of StageId.
@@ -112,11 +116,6 @@ inline const StageInfo& info_of(StageId id) { return stage_list()[static_cast<st
 // "depth_test", or "prepass_depth_test" in a depth pre-pass; empty for StageId::none.
 std::string_view name_of(Stage stage);
 std::ostream& operator<<(std::ostream& stream, Stage stage);
-
-// Does the stage make pairs or samples of triangles?
-constexpr bool rasterizes(StageId id) {
-  return id == StageId::conservative_raster || id == StageId::sample_raster || id == StageId::reference_raster;
-}
 
 // The stage with that name, or none.
 std::optional<Stage> find_stage(std::string_view name);

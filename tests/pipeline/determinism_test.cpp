@@ -78,7 +78,7 @@ void expect_same_in_any_tile(const Trace& trace) {
           a.ops = b.ops = {};  // the edges of a triangle are prepared for masks once per tile
         if (spec.starts_with("reference") && a.stage == StageId::resolve) continue;  // it skips tiles without triangles
         // Rasters count their setup once per tile, and `material_sort` has the sums of 256 digits in each tile.
-        if (!rasterizes(a.stage.id) && a.stage != StageId::material_sort) {
+        if (!info_of(a.stage.id).rasterizes && a.stage != StageId::material_sort) {
           EXPECT_EQ(a, b) << a.stage;
         }
       }

@@ -51,13 +51,6 @@ struct FrameKind {
 
 bool is_of_bins(const Stage& stage) { return stage.id != StageId::vertex_setup; }
 
-// Does the stage take what belongs to a pixel in order, so that a pixel has one thread?
-bool works_by_pixel(StageId id) {
-  const StageGroup group = info_of(id).group;
-  return group == StageGroup::visibility || group == StageGroup::picture || id == StageId::a_buffer ||
-         id == StageId::windows;
-}
-
 // That a stage starts in all.
 double threads_of_frame(const StageCounters& stage) {
   const bool is_shading = info_of(stage.stage.id).group == StageGroup::shading;
@@ -68,7 +61,7 @@ double threads_of_frame(const StageCounters& stage) {
 double threads_of_bin(const StageCounters& stage, const FrameKind& frame) {
   const bool is_picture = info_of(stage.stage.id).group == StageGroup::picture;
   const double items = threads_of_frame(stage) / (is_picture ? frame.bins : frame.shaded_bins);
-  return works_by_pixel(stage.stage.id) ? std::min(items, frame.bin.pixels) : items;
+  return info_of(stage.stage.id).works_by_pixel ? std::min(items, frame.bin.pixels) : items;
 }
 
 // Those of bins are at most those of the bins that cores hold.
