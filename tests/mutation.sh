@@ -4,8 +4,9 @@
 #   tests/mutation.sh --check                    only looks whether the code still has what is to be broken
 #
 # Works on this tree, one mutant at a time, and restores each file: a clone of its own is best, with a compiler cache.
-# BUILD FOLDER/mutants.txt gets a line for each mutant. A later run goes on: it leaves out those that were noticed.
-# Ends with an error if no test notices a mutant.
+# All tests must pass before the first mutant. BUILD FOLDER/mutants.txt gets the commit and a line for each mutant. A
+# later run of the same commit goes on: it leaves out those that were noticed. In a run of another commit, what noticed
+# a mutant last time (BUILD FOLDER/noticed.txt) is tried first. Ends with an error if no test notices a mutant.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -451,7 +452,28 @@ done
 build=${1:-build/release}
 only=" ${*:2} "
 results=$build/mutants.txt
-touch "$results"
+commit=$(git rev-parse HEAD)
+if [[ $(head -1 "$results" 2>/dev/null) != "$commit" ]]; then
+  for folder in simd spirv stages programs traces pipeline tools; do
+    echo "unbroken: ${folder}_tests"
+    cmake --build "$build" --target "${folder}_tests" >/dev/null
+    "$build/tests/${folder}_tests" --gtest_brief=1
+  done
+  [[ ! -e $results ]] || cat "$results" >>"$build/noticed.txt"
+  echo "$commit" >"$results"
+fi
+
+# build_and_run FOLDER [TEST]: sets `noticed` if a test of the folder fails, or the one test.
+build_and_run() {
+  local log
+  if ! cmake --build "$build" --target "$1_tests" >/dev/null 2>&1; then
+    noticed="$1_tests the compiler"  # of a build with warnings as errors
+  elif ! log=$(timeout 20m "$build/tests/$1_tests" --gtest_fail_fast --gtest_brief=1 ${2:+--gtest_filter="$2"} 2>&1); then
+    noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
+    noticed="$1_tests ${noticed:-crashed or did not end}"
+  fi
+}
+
 unnoticed=0
 for mutant in "${mutants[@]}"; do
   IFS='|' read -r file whole broken <<<"$mutant"
@@ -461,7 +483,6 @@ for mutant in "${mutants[@]}"; do
   cp "$file" "$original"
   trap 'cp "$original" "$file"' EXIT
   WHOLE=$whole BROKEN=$broken perl -0pi -e 's/\Q$ENV{WHOLE}\E/$ENV{BROKEN}/' "$file"
-  noticed=
   case $file in
     simd/*) folders=(simd stages pipeline) ;;
     stages/spirv/*) folders=(spirv programs) ;;
@@ -470,15 +491,12 @@ for mutant in "${mutants[@]}"; do
     pipeline/*) folders=(pipeline tools) ;;
     *) folders=("${file%%/*}") ;;
   esac
+  noticed=
+  before=$(grep -F -- "$mutant: " "$build/noticed.txt" 2>/dev/null | tail -1 || true)
+  read -r program test <<<"${before##*: }"
+  [[ $test != *.* ]] || build_and_run "${program%_tests}" "$test"
   for folder in "${folders[@]}"; do
-    if ! cmake --build "$build" --target "${folder}_tests" >/dev/null 2>&1; then
-      noticed="the compiler"  # of a build with warnings as errors
-      break
-    fi
-    log=$(timeout 20m "$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
-    noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
-    noticed=${noticed:-${folder}_tests, which crashed or did not end}
-    break
+    [[ $noticed ]] || build_and_run "$folder"
   done
   cp "$original" "$file"
   trap - EXIT

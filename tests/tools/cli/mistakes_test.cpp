@@ -70,7 +70,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"plot", path("endless"), "-o", path("p.svg")}, 1, "endless/report.json: expected a regular file"},
       {{"claims", path("piped")}, 1, "piped/report.json: expected a regular file"},
       {{"diff", path("piped/report.json"), path("piped/report.json")}, 1, "not a file"},
-      {{"run", trace, "-t", "beam", "-o", out, "--simd", "avx9"}, 2, "scalar"},
+      {{"run", trace, "-t", "beam", "-o", out, "--simd", "avx9"}, 2, "avx9 not in {"},
       {{"run", trace, "-t", "beam", "-o", out, "--frames", "1-2"}, 2, "--frames 1-2"},
       {{"run", trace, "-t", "beam", "-o", out, "--threads", "0"}, 2, "--threads"},
       {{"run", trace, "-t", "beam", "-o", out, "--on-chip-memory", "16"},
