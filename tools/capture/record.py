@@ -13,6 +13,7 @@ from attempts import EarlyCrash, first_success
 from failure import Failure
 from redraw import ask_for_redraw
 
+HOST = "127.0.0.1"  # RenderDoc's own default is the name localhost, which not every machine knows
 REDRAW_AFTER = 2.0  # seconds without a new picture before the program's windows are asked to draw again
 COUNTING = 3.0  # seconds after the time limit within which a program's next picture says how many there were
 LAST_WORDS = 0.5  # seconds that are waited for the rest of what a program prints; what it has started may go on
@@ -52,9 +53,9 @@ class _Output:
 
 def _attach(program):
     """RenderDoc's control of the program or of a process that it has started, or None if there is none yet."""
-    ident = rd.EnumerateRemoteTargets("", 0)
+    ident = rd.EnumerateRemoteTargets(HOST, 0)
     while ident:
-        control = rd.CreateTargetControl("", ident, "beampipe", True)
+        control = rd.CreateTargetControl(HOST, ident, "beampipe", True)
         if control is not None:
             try:
                 if os.getpgid(control.GetPID()) == program.pid:
@@ -62,7 +63,7 @@ def _attach(program):
             except ProcessLookupError:
                 pass
             control.Shutdown()
-        ident = rd.EnumerateRemoteTargets("", ident)
+        ident = rd.EnumerateRemoteTargets(HOST, ident)
     return None
 
 
