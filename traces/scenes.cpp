@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "traces/scenes/scene.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -55,7 +56,7 @@ Trace make_scene(std::string_view name, const SceneOptions& options) {
   if (std::clamp(options.width, 1u, kLargestSide) != options.width ||
       std::clamp(options.height, 1u, kLargestSide) != options.height) {
     throw std::invalid_argument("expected a width and height of 1.." + std::to_string(kLargestSide) + ", found " +
-                                std::to_string(options.width) + " x " + std::to_string(options.height));
+                                size_text(options.width, options.height));
   }
   std::string known;
   for (const SceneKind& kind : scene_kinds()) {

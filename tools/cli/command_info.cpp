@@ -15,6 +15,7 @@
 #include "tools/report/report_text.h"
 #include "traces/files/json.h"
 #include "traces/files/trace_io.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -125,10 +126,6 @@ MaterialInfo info_of(const std::vector<Material>& materials) {
 
 std::string text_of(const Lighting& lighting) {
   return std::to_string(lighting.lights.size()) + (lighting.ambient ? " + ambient" : "");
-}
-
-std::string size_text(std::uint32_t width, std::uint32_t height) {
-  return std::to_string(width) + " x " + std::to_string(height);
 }
 
 Json to_json(const Bounds& bounds) {

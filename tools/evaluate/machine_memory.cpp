@@ -8,6 +8,7 @@
 #include "stages/data/setup_triangle.h"
 #include "stages/geometry/vertex_setup.h"
 #include "stages/surface/surface_shader.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -88,8 +89,8 @@ void require_memory(const Trace& trace, const Frame& frame, std::uint32_t bytes_
   const std::uint64_t needed = frame_memory(trace, frame, bytes_per_pixel);
   if (needed <= memory) return;
   throw std::runtime_error(
-      name + ": " + std::to_string(frame.width) + " x " + std::to_string(frame.height) + " pixels and " +
-      std::to_string(triangles_of(trace, frame)) + " triangles" +
+      name + ": " + size_text(frame.width, frame.height) + " pixels and " + std::to_string(triangles_of(trace, frame)) +
+      " triangles" +
       (has_varying_surfaces(trace, frame) ? ", with " + std::to_string(trace.materials.size()) + " materials and " +
                                                 std::to_string(trace.images.size()) + " images,"
                                           : "") +

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tools/evaluate/powers.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 
@@ -15,9 +16,8 @@ void require_same_size(const Image& image, const Image& reference) {
   const std::size_t values = std::size_t{4} * image.width * image.height;
   if (image.width != reference.width || image.height != reference.height || image.rgba.size() != values ||
       reference.rgba.size() != values) {
-    throw std::invalid_argument("the pictures have different sizes: " + std::to_string(image.width) + " x " +
-                                std::to_string(image.height) + " and " + std::to_string(reference.width) + " x " +
-                                std::to_string(reference.height));
+    throw std::invalid_argument("the pictures have different sizes: " + size_text(image.width, image.height) + " and " +
+                                size_text(reference.width, reference.height));
   }
 }
 

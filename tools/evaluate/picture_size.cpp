@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "traces/size_text.h"
+
 namespace beampipe {
 namespace {
-
-std::string text_of(const PictureSize& size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
 
 bool has_viewport(const Frame& frame) {
   return std::any_of(frame.draws.begin(), frame.draws.end(),
@@ -32,10 +30,10 @@ void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureS
     if (size == PictureSize{frame.width, frame.height}) continue;
     const bool same_ratio = std::uint64_t{frame.width} * size.height == std::uint64_t{frame.height} * size.width;
     if (trace.source)
-      throw std::runtime_error(name + ": cannot be " + text_of(size) + " pixels: expected " +
-                               text_of({frame.width, frame.height}) + ", because the frame was captured so");
+      throw std::runtime_error(name + ": cannot be " + size_text(size.width, size.height) + " pixels: expected " +
+                               size_text(frame.width, frame.height) + ", because the frame was captured so");
     if (has_viewport(frame) || (!frame.camera && !same_ratio))
-      throw std::runtime_error(name + ": cannot be " + text_of(size) +
+      throw std::runtime_error(name + ": cannot be " + size_text(size.width, size.height) +
                                " pixels: expected frames that name a camera, or have this ratio of width to height, "
                                "without viewports");
     frame.width = size.width, frame.height = size.height;

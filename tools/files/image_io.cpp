@@ -16,6 +16,7 @@
 #include <fstream>
 
 #include "traces/files/image_file.h"
+#include "traces/size_text.h"
 #include "traces/srgb.h"
 
 namespace beampipe {
@@ -126,8 +127,8 @@ void require_plausible_size(const Imf::Header& header, Size size, std::uint64_t 
   const bool dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
   const std::uint64_t most = std::max(file_bytes * kMostExpansion, dwa ? kMostFlatBytes : 0);
   if (pixel_bytes * size.width * size.height <= most) return;
-  throw std::runtime_error("it claims " + std::to_string(size.width) + " x " + std::to_string(size.height) +
-                           " pixels, too many for its " + std::to_string(file_bytes) + " bytes");
+  throw std::runtime_error("it claims " + size_text(size.width, size.height) + " pixels, too many for its " +
+                           std::to_string(file_bytes) + " bytes");
 }
 
 Size checked_size(const Imf::Header& header) {

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "tools/stress/case_parts.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -42,11 +43,7 @@ HardCase one_pixel() {
 HardCase widest(std::uint32_t width, std::uint32_t height, const std::string& name) {
   Screen screen(width, height);
   screen.triangle({width - 3.2, height * 0.1}, {width - 0.1, height * 0.5}, {width - 2.9, height * 0.9}, 0.5, kRed);
-  return {name,
-          "a viewport of " + std::to_string(width) + " x " + std::to_string(height),
-          screen.trace(),
-          {},
-          full_masks()};
+  return {name, "a viewport of " + size_text(width, height), screen.trace(), {}, full_masks()};
 }
 
 HardCase deep_pixel() {

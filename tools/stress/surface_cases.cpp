@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tools/stress/case_parts.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -114,7 +115,7 @@ HardCase grazing_texture() {
 HardCase widest_texture(std::uint32_t width, std::uint32_t height, const std::string& name) {
   Screen screen(16, 16);
   screen.triangle({-3.3, 0.2}, {25.8, 2.4}, {7.9, 25.1}, 0.5, kRed);
-  return within_noise(name, "a texture of " + std::to_string(width) + " x " + std::to_string(height) + " texels",
+  return within_noise(name, "a texture of " + size_text(width, height) + " texels",
                       with_texture(screen.trace(), noise(width, height), {.wrap_u = Wrap::mirror},
                                    [](const glm::vec3& p) { return glm::vec2(p.x / 16, p.y / 16); }));
 }

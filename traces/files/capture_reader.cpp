@@ -3,15 +3,13 @@
 #include <bit>
 #include <limits>
 
+#include "traces/size_text.h"
+
 namespace beampipe {
 namespace {
 
 constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kMostSamples = 16;  // whose places are a standard
-
-std::string size_text(std::uint32_t width, std::uint32_t height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
 
 Form<RenderPass> pass_form() {
   const Form<std::uint32_t> count = form::integer(0, kMost);

@@ -15,6 +15,7 @@
 
 #include "traces/files/input_file.h"
 #include "traces/files/json.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -32,7 +33,7 @@ std::string in_numbers(std::uint64_t number, const char* unit) { return std::to_
 // An image without a name and with black texels. `least_bytes` is the least that a file of this size has.
 TextureImage blank_image(std::uint32_t width, std::uint32_t height, std::uint64_t most_texels, std::uint64_t bytes,
                          std::uint64_t least_bytes) {
-  const std::string size = std::to_string(width) + " x " + std::to_string(height);
+  const std::string size = size_text(width, height);
   if (width > kLargestImageSide || height > kLargestImageSide) {
     throw BadImage{"at most " + in_numbers(kLargestImageSide, "texels on a side"), size};
   }
