@@ -8,4 +8,3 @@ tools/install_packages.sh test
 cmake --preset release -DBEAMPIPE_BENCH=ON -DCMAKE_UNITY_BUILD=ON "$@"
 cmake --build --preset release --parallel "$(nproc)"
 ctest --preset release --parallel "$(nproc)"
-tests/fuzz/run.sh 12
