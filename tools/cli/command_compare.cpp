@@ -40,19 +40,12 @@ void tell_unexplained(const std::vector<std::string>& specs) {
               << list_of(specs, "and") << "\n";
 }
 
-// Pictures for later comparisons.
-struct KeptPictures {
-  std::string folder;  // empty: the default one
-  bool ladder = false;
-};
-
 void compare(const RunArguments& arguments, const CompareOptions& options, const RecordedPixels& pixels,
-             const KeptPictures& kept, InterruptGate& gate) {
+             const std::string& cache_folder, InterruptGate& gate) {
   check_pixels_per_degree(options.pixels_per_degree);
   RunPlan plan = make_plan(arguments);
-  if (const std::filesystem::path folder = picture_cache_folder(kept.folder); !folder.empty())
+  if (const std::filesystem::path folder = picture_cache_folder(cache_folder); !folder.empty())
     plan.pictures = std::make_shared<PictureCache>(folder, plan.trace);
-  plan.keeps_ladder = kept.ladder;
   tell_notes(plan.notes);
   std::vector<std::string> unexplained;
   for (const Technique& technique : plan.techniques)
@@ -115,15 +108,13 @@ void add_compare_command(CommandLine& line, const std::string& command_line, Int
            "that `beampipe inspect` can explain)")
       .between(0, 1000);
   command.add("--inspect", pixels->chosen, "X,Y of other pixels to record, in every frame");
-  const auto kept = std::make_shared<KeptPictures>();
-  add_reference_cache(command, kept->folder);
-  command.add_flag("--keep-ladder", kept->ladder,
-                   "keep pictures of the MSAA ladder there, too: another --metric then needs no rendering of it");
+  const auto cache_folder = std::make_shared<std::string>();
+  add_reference_cache(command, *cache_folder);
   command.footer(kCompareFooter + technique_help());
-  command.set_work([arguments, options, pixels, kept, measures_reference, &gate] {
+  command.set_work([arguments, options, pixels, cache_folder, measures_reference, &gate] {
     if (*measures_reference && std::ranges::count(arguments->specs, kSecondReferenceSpec) == 0)
       arguments->specs.emplace_back(kSecondReferenceSpec);
-    compare(*arguments, *options, *pixels, *kept, gate);
+    compare(*arguments, *options, *pixels, *cache_folder, gate);
   });
 }
 

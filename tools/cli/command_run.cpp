@@ -48,8 +48,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
       FrameRecord record;
       const std::vector<WallTime> times =
           render_frame(plan, frame, progress, histories, [&](std::size_t i, FrameResult&& result) {
-            record.reports.push_back(
-                write_frame(output, plan, maker, {plan.techniques[i].spec, frame, result}, progress));
+            record.reports.push_back(write_frame(output, plan, maker, {plan.techniques[i].spec, frame, result}));
           });
       for (std::size_t i = 0; i < times.size(); ++i) record.reports[i].wall_ms = times[i];
       add(record);

@@ -1,7 +1,6 @@
 #include "tools/cli/run_arguments.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -41,22 +40,11 @@ void require_trace(const RunArguments& arguments) {
 MemoryParameters memory_of(const RunArguments& arguments, const Hardware& hardware) {
   MemoryParameters memory = hardware.memory;
   memory.modelled = !arguments.no_memory_model;
-  if (arguments.no_compression) memory.compression = false;
   if (arguments.framebuffer == kByTechnique) memory.framebuffer.reset();
   if (arguments.framebuffer == kOnChip) memory.framebuffer = Place::on_chip;
   if (arguments.framebuffer == kInMemory) memory.framebuffer = Place::in_memory;
   if (arguments.on_chip_bytes > 0) memory.on_chip_bytes = static_cast<std::uint32_t>(arguments.on_chip_bytes);
   return memory;
-}
-
-std::shared_ptr<TevViewer> connect_tev(const std::string& address) {
-  const std::size_t colon = std::min(address.find(':'), address.size());
-  const std::string host = address.substr(0, colon), port = address.substr(std::min(colon + 1, address.size()));
-  std::uint16_t number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (host.empty() || error != std::errc() || end != port.data() + port.size() || number == 0)
-    throw UsageError("--tev " + address + ": expected HOST:PORT, such as localhost:14158");
-  return std::make_shared<TevViewer>(host, port);
 }
 
 }  // namespace
@@ -103,14 +91,9 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       "--trace-events", arguments.trace_events,
       "write a timeline of the stages, by tile and thread, to this file outside the output folder; ui.perfetto.dev "
       "shows it");
-  command.add(
-      "--tev", arguments.tev,
-      "HOST:PORT of the image viewer tev (its own default is localhost:14158), which shows pictures as they are "
-      "written");
   command.add_flag(
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
-  command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
   command
       .add("--framebuffer", arguments.framebuffer,
            "where the pixels of a bin are kept: on chip, as in tile-based rendering; in memory, behind caches; or as "
@@ -148,7 +131,6 @@ RunPlan make_plan(const RunArguments& arguments) {
         !reason.empty() && !is_reference(technique.spec))
       std::cerr << "beampipe: note: " << technique.spec << ": pixels in memory: " << reason << "\n";
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
-  if (!arguments.tev.empty()) plan.viewer = connect_tev(arguments.tev);
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());

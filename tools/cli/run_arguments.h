@@ -16,7 +16,7 @@ namespace beampipe {
 // The arguments as the user wrote them.
 struct RunArguments {
   std::string command_line;  // all words, as one text
-  std::string trace, output, frames, trace_events, tev;
+  std::string trace, output, frames, trace_events;
   HardwareOptions hardware;
   TraceView view;
   std::vector<std::string> specs;
@@ -26,7 +26,7 @@ struct RunArguments {
   std::uint64_t on_chip_bytes = 0;  // 0: as the hardware says
   int threads = 0, repeat = 1;
   std::size_t measure_from = 0;
-  bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false, force = false;
+  bool allow_outside = false, no_memory_model = false, resume = false, force = false;
 };
 
 // `arguments` must live until the command line is parsed.

@@ -102,7 +102,7 @@ ErrorAccumulator Comparison::new_errors() const {
 void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   WallTime reference_time;
   const FrameResult truth = render_kept(reference_, plan_, frame, progress, &reference_time);
-  FrameReport reference = write_frame(output_, plan_, maker_, {reference_.spec, frame, truth}, progress);
+  FrameReport reference = write_frame(output_, plan_, maker_, {reference_.spec, frame, truth});
   reference.wall_ms = reference_time;
   reference.error = no_error();
   if (split_) {
@@ -116,7 +116,7 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
         const std::optional<ErrorParts> parts = explain(i, result, truth.image, frame, progress);
         FrameReport& report = record.reports.emplace_back(
             write_frame(output_, plan_, maker_,
-                        {plan_.techniques[i].spec, frame, result, &truth.image, metric_.pixels_per_degree}, progress));
+                        {plan_.techniques[i].spec, frame, result, &truth.image, metric_.pixels_per_degree}));
         report.parts = parts;
         errors_[i].add(result.image, truth.image);
         add_block_squares(result.image, truth.image, blocks_[i]);

@@ -42,8 +42,7 @@ MsaaLadder::MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors,
 void MsaaLadder::add(Rung& rung, const RunPlan& plan, std::size_t frame, const Image& reference,
                      Progress& progress) const {
   if (index_of(rung.technique.spec, plan) < plan.techniques.size()) return;
-  const Image image = plan.keeps_ladder ? kept_picture(rung.technique, plan, frame, progress, colors_)
-                                        : render_picture(rung.technique, plan, frame, progress, colors_);
+  const Image image = render_picture(rung.technique, plan, frame, progress, colors_);
   ErrorStats stats = measure_named_error(rung.technique.spec, frame, image, reference);
   const Measure& measure = metric_.measure;
   if (measure.measure)

@@ -39,11 +39,6 @@ Completion& Progress::show(std::string text) {
   return completion_;
 }
 
-void Progress::note(const std::string& text) {
-  const std::lock_guard lock(mutex_);
-  std::fprintf(stderr, "%sbeampipe: note: %s\n", ticker_.joinable() ? "\r\033[K" : "", text.c_str());
-}
-
 void Progress::tick() {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();

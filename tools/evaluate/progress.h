@@ -28,9 +28,6 @@ class Progress {
   // Returns what the rendering that this is about is to fill, if it fills any.
   Completion& show(std::string text);
 
-  // Prints a note on stderr, wherever that goes, in place of the line that is shown.
-  void note(const std::string& text);
-
  private:
   void tick();
 

@@ -176,8 +176,7 @@ ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const
   }
 }
 
-FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame,
-                        Progress& progress) {
+FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame) {
   const auto& [spec, index, result, reference, pixels_per_degree] = frame;
   const Labels labels = {{"beampipe.trace", std::filesystem::path(plan.trace_file).filename().string()},
                          {"beampipe.trace_digest", made_by.at("trace").get<std::string>()},
@@ -205,11 +204,6 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   if (!counters.channels.empty()) {
     report.counters = stem + "_counters.exr";
     output.write(report.counters, encode_exr(counters, labels));
-  }
-  if (plan.viewer) {
-    const std::string trace = std::filesystem::path(plan.trace_file).stem().string();
-    const std::string name = trace + "/" + spec + "/frame " + std::to_string(index);
-    if (const std::optional<std::string> loss = plan.viewer->show(name, result.image)) progress.note(*loss);
   }
   return report;
 }

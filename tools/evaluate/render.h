@@ -62,11 +62,9 @@ struct RenderedFrame {
 // Writes a frame's image (EXR), its picture (PNG) and its per-pixel counters, if there are any, into the technique's
 // folder. The headers of EXR files name the trace's file, its digest, the technique, the frame and the program's
 // version, as maker_form() (tools/evaluate/resume.h) has them. Returns the frame's report, which lacks the times. If
-// it has a reference, the error of the image is in the report and in a counter named `error`. The plan's viewer shows
-// the image as TRACE/SPEC/frame N; that it is lost is only noted. Throws as OutputFolder::write does and, before
-// anything is written, as measure_named_error does.
-FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame,
-                        Progress& progress);
+// it has a reference, the error of the image is in the report and in a counter named `error`. Throws as
+// OutputFolder::write does and, before anything is written, as measure_named_error does.
+FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame);
 
 // Throws std::runtime_error, one line, unless report.json, the folder of every technique and the folder of frame
 // records can be written.

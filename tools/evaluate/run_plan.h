@@ -10,7 +10,6 @@
 #include "stages/geometry/draw_notes.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/picture_cache.h"
-#include "tools/files/tev.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -30,8 +29,6 @@ struct RunPlan {
   FrameSinks sinks;
   std::vector<DrawNote> notes;                   // of `frames`
   std::shared_ptr<const PictureCache> pictures;  // of the reference; null: none are kept
-  std::shared_ptr<TevViewer> viewer;             // shows pictures as they are written; null: none does
-  bool keeps_ladder = false;                     // are those of the MSAA ladder kept there, too?
 };
 
 inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {

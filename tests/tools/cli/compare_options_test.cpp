@@ -64,18 +64,6 @@ TEST_F(CompareOptionsTest, KeepsTheReferenceForItsSceneAlone) {
   EXPECT_NE(errors(changed), errors(first));
 }
 
-TEST_F(CompareOptionsTest, KeepsTheLadderForOtherMetrics) {
-  make("1");
-  const Names options = {"-t",         "beam",         "--ladder", "1,2,8", "--frames", "0", "--reference-cache",
-                         path("kept"), "--keep-ladder"};
-  compare(options);
-  EXPECT_EQ(kept_pictures(), 4u) << "the reference and three rungs";
-  const Parsed by_mae = compare(joined(options, {"--metric", "mae"}));
-  EXPECT_EQ(kept_pictures(), 4u);
-  EXPECT_EQ(errors(by_mae), errors(compare({"-t", "beam", "--ladder", "1,2,8", "--frames", "0", "--reference-cache",
-                                            "none", "--metric", "mae"})));
-}
-
 TEST_F(CompareOptionsTest, MeasuresTheReferenceItself) {
   make("1");
   const Names options = {"-t", "beam", "msaa:64", "--ladder", "1,2,4,8,16", "--frames", "0"};

@@ -82,13 +82,14 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
       Json &parameters = hardware["memory_system"]["parameters"], &sources = hardware["memory_system"]["sources"];
       for (const auto& [name, value] : {std::pair("l2_bytes", l2), std::pair("bin_pixels", bin)})
         parameters[name] = std::stoi(value), sources[name] = "choice";
+      parameters["compression"] = compressed, sources["compression"] = "choice";
       write_text(folder_ / "h.json", hardware.dump());
       const auto results = [&](const std::string& verb, const Names& options) {
         const Names start = {verb, path("soup.json"), "--hardware", path("h.json"), "--force", "-o", path("single")};
         succeed(joined(joined(joined(start, options), {"-t"}), specs));
         return Parsed::parse(read_text(folder_ / "single/report.json"))["results"];
       };
-      runs[key] = results("run", compressed ? Names{} : Names{"--no-compression"});
+      runs[key] = results("run", {});
       if (!comparisons.contains(bin)) comparisons[bin] = results("compare", {});
     }
     const Parsed& result = of_technique(runs[key], row["technique"]);
