@@ -1,12 +1,8 @@
 // Random streams of draws with all of the state that the API knows, against a supersampler that follows OpenGL 4.6
 // (sections 14.9, 17.3 and 17.4) draw by draw and sample by sample, and shares no code with the stages.
 
-#include <array>
-#include <functional>
-
 #include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
 #include "tests/simd/random.h"
 #include "tests/thorough.h"
 
@@ -291,9 +287,7 @@ struct Stream {
 
 void expect_picture(const Stream& stream, const std::string& spec, const std::vector<std::array<int, 2>>& places,
                     double tolerance) {
-  FrameInput run;
-  run.memory.modelled = false;
-  const Image image = parse_technique(spec).render(stream.trace, 0, run).image;
+  const Image image = render_unmodelled(spec, stream.trace).image;
   const double clear_depth = stream.clear_depth();
   for (std::uint32_t y = 0; y < kSize; ++y) {
     for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -365,9 +359,7 @@ TEST(ApiOrder, TheReferenceFollowsRandomStreams) {
       return box;
     });
     // The triangles of a box have different depths, so pixels at a diagonal differ.
-    FrameInput run;
-    run.memory.modelled = false;
-    const Image image = parse_technique("reference").render(stream.trace, 0, run).image;
+    const Image image = render_unmodelled("reference", stream.trace).image;
     const double clear_depth = stream.clear_depth();
     for (std::uint32_t y = 0; y < kSize; ++y) {
       for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -398,12 +390,9 @@ TEST(ApiOrder, MultisamplingConvergesToTheReference) {
   for (int seed = 0; seed < 10; ++seed) {
     Random random(static_cast<unsigned>(seed) + 2000000);
     const Stream stream(random, [&] { return random_triangles(random); });
-    FrameInput run;
-    run.memory.modelled = false;
-    const auto render = [&](const char* spec) { return parse_technique(spec).render(stream.trace, 0, run).image; };
-    const Image reference = render("reference");
+    const Image reference = render_unmodelled("reference", stream.trace).image;
     const auto error = [&](const char* spec) {
-      const Image image = render(spec);
+      const Image image = render_unmodelled(spec, stream.trace).image;
       double sum = 0, scale = 0;
       for (std::size_t i = 0; i < image.rgba.size(); ++i) {
         if (i % 4 == 3) continue;
@@ -432,32 +421,25 @@ Trace slopes(const std::vector<Mesh>& meshes) {
   return trace;
 }
 
-glm::vec3 color_at(const std::string& spec, const Trace& trace, std::uint32_t x) {
-  FrameInput run;
-  run.memory.modelled = false;
-  const Image image = parse_technique(spec).render(trace, 0, run).image;
-  const float* const pixel = &image.rgba[4 * (3 * kSize + x)];
-  return {pixel[0], pixel[1], pixel[2]};
+void expect_color(const Trace& trace, std::uint32_t x, const glm::vec3& color) {
+  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"})
+    EXPECT_EQ(pixel(render_unmodelled(spec, trace).image, x, 3), color) << spec << ", column " << x;
 }
 
 // A bias towards the viewer decides ties, also of a triangle that lies partly before the near plane.
 TEST(ApiOrder, BiasCountsUpToTheNearPlane) {
   Trace trace = slopes({slope(-0.25, 1.0 / 32, {1, 0, 0}), slope(-0.25, 1.0 / 32, {0, 1, 0})});
   trace.frames[0].draws[1].state.depth.bias.constant = -0.01f;
-  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"}) {
-    EXPECT_EQ(color_at(spec, trace, 2), trace.frames[0].background) << spec << ": before the near plane";
-    EXPECT_EQ(color_at(spec, trace, 12), glm::vec3(0, 1, 0)) << spec;
-  }
+  expect_color(trace, 2, trace.frames[0].background);  // before the near plane
+  expect_color(trace, 12, {0, 1, 0});
 }
 
 // A bias of 0.25 takes what is farther than 0.75 to the end, which is not less than where depth was cleared to.
 TEST(ApiOrder, BiasEndsWhereDepthIsCleared) {
   Trace trace = slopes({slope(0, 1.0 / 16, {1, 0, 0})});
   trace.frames[0].draws[0].state.depth.bias.constant = 0.25f;
-  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"}) {
-    EXPECT_EQ(color_at(spec, trace, 6), glm::vec3(1, 0, 0)) << spec;
-    EXPECT_EQ(color_at(spec, trace, 13), trace.frames[0].background) << spec;
-  }
+  expect_color(trace, 6, {1, 0, 0});
+  expect_color(trace, 13, trace.frames[0].background);
 }
 
 // Whole coverage by alpha does not change depths, at which the same triangle is drawn again.
@@ -473,8 +455,7 @@ TEST(ApiOrder, CoverageByAlphaKeepsDepths) {
   DrawState& state = trace.frames[0].draws[1].state;
   state.depth.function = Compare::equal, state.alpha_to_coverage = true;
   state.blend = Blend{{BlendFactor::one, BlendFactor::zero}, {}, {}};
-  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"})
-    EXPECT_EQ(color_at(spec, trace, 6), glm::vec3(0, 1, 0)) << spec;
+  expect_color(trace, 6, {0, 1, 0});
 }
 
 // Draws that are not clipped limit depths to their own range, 0 to 0.5 here, also after the bias: 0.45 + 0.25 is 0.5,
@@ -483,8 +464,7 @@ TEST(ApiOrder, DepthsThatAreNotClippedStayInTheirRange) {
   Trace trace = slopes({slope(0.9, 0, {1, 0, 0}), slope(0.6, 0, {0, 1, 0})});
   DrawState& state = trace.frames[0].draws[0].state;
   state.depth.far = 0.5f, state.depth.clip = false, state.depth.bias.constant = 0.25f;
-  for (const char* spec : {"msaa:1", "msaa:4", "beam", "reference"})
-    EXPECT_EQ(color_at(spec, trace, 6), glm::vec3(1, 0, 0)) << spec;
+  expect_color(trace, 6, {1, 0, 0});
 }
 
 // What moves between the units and their caches for a tile of 8-bit RGBA: a stencil test reads a word of each pixel,
@@ -499,8 +479,7 @@ TEST(ApiOrder, MovesWhatDrawsReadAndWrite) {
     trace.frames[0].draws.clear();
     for (std::size_t i = 0; i < states.size(); ++i) {
       const auto number = static_cast<std::uint32_t>(i);
-      const Trace one = pixel_trace(kSize, kSize, {{{{-40, -40, 0.5}, {80, -40, 0.5}, {-40, 80, 0.5}}, glm::vec3(1)}});
-      trace.meshes.push_back(one.meshes[0]);
+      trace.meshes.push_back(pixel_trace(kSize, kSize, {covering(0.5)}).meshes[0]);
       Draw draw;
       draw.mesh = number;
       draw.state = states[i];
@@ -536,8 +515,7 @@ TEST(ApiOrder, MovesWhatDrawsReadAndWrite) {
 
 // A red surface, and then half of green is added and a quarter of all is kept.
 TEST(ApiOrder, HistoriesHaveTheWeightsOfBlending) {
-  Trace trace =
-      pixel_trace(kSize, kSize, {{{{-40, -40, 0.5}, {80, -40, 0.5}, {-40, 80, 0.5}}, {1, 0, 0}}}, glm::vec3(0.5f));
+  Trace trace = pixel_trace(kSize, kSize, {covering(0.5, {1, 0, 0})}, glm::vec3(0.5f));
   trace.meshes.push_back(trace.meshes[0]);
   trace.meshes[1].colors = {{0, 1, 0}};
   trace.frames[0].draws.push_back(Draw{.mesh = 1});

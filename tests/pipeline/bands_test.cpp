@@ -4,7 +4,6 @@
 #include "stages/raster/conservative_raster.h"
 #include "tests/message_of.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
 #include "tests/simd/random.h"
 
 namespace beampipe::bands_test {

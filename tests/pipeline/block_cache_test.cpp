@@ -63,18 +63,6 @@ TEST(BlockCache, WritesBackWhatIsDirtyOnce) {
   EXPECT_EQ(meter.since(), (Bytes{0, 0})) << "there is nothing left";
 }
 
-TEST(BlockCache, TheLeastRecentlyUsedLineOfItsSetGoes) {
-  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128});
-  Meter meter;
-  for (const std::size_t block : {0, 2, 0, 4})
-    cache.read(static_cast<std::uint32_t>(block), block, 0, 32, meter.counters);
-  cache.read(9, 0, 0, 32, meter.counters);  // used more recently than block 2, so it is still there
-  cache.read(9, 2, 0, 32, meter.counters);  // evicted
-  cache.read(9, 1, 0, 32, meter.counters);  // the other set
-  cache.flush(meter.counters);
-  EXPECT_EQ(meter.since(), (Bytes{7 * 32, 5 * 32}));
-}
-
 TEST(BlockCache, ClearedBlocksAreNotFetchedAndGoBackWhole) {
   BlockCache cache(memory(), kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128, .cleared = true});
   Meter meter;

@@ -6,24 +6,10 @@
 #include "stages/beam/beam_fragment.h"
 #include "stages/geometry/vertex_setup.h"
 #include "tests/pipeline/counted_heap.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
+#include "tests/pipeline/test_pictures.h"
 #include "traces/scenes.h"
 
 namespace beampipe::buffers_test {
-
-std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
-  if (name == "a_buffer") return result.a_buffer_peak_bytes;
-  for (const Buffer& buffer : result.buffers)
-    if (buffer.name == name) return buffer.peak_bytes;
-  throw std::runtime_error("no buffer " + name);
-}
-
-FrameResult render_unmodelled(const std::string& spec, const Trace& trace) {
-  FrameInput run{1};
-  run.memory.modelled = false;
-  return parse_technique(spec).render(trace, 0, run);
-}
 
 // Triangles over the lower left half of one pixel, from far to near, so that none hides a later one.
 Trace halves(int layers) {

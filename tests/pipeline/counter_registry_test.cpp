@@ -2,7 +2,6 @@
 #include "stages/cost/counter_registry.h"
 
 #include "pipeline/technique_table.h"
-#include "tests/pipeline/test_traces.h"
 #include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 

@@ -1,12 +1,6 @@
 // Fixed-function state in pictures: random frames of quads that cover whole pixels, against a depth buffer that follows
 // the rules of OpenGL draw by draw.
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <string>
-
 #include "pipeline/technique_table.h"
 #include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/test_pictures.h"

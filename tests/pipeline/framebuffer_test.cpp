@@ -2,9 +2,7 @@
 
 #include "stages/data/setup_triangle.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
 #include "tests/stages/surface_scene.h"
-#include "tests/test.h"
 
 namespace beampipe::framebuffer_test {
 
@@ -18,15 +16,8 @@ constexpr MemoryParameters kRoomy = [] {
 }();
 
 // One bin that a single triangle covers.
-Trace covered_bin() {
-  return pixel_trace(32, 32, {{{{-10, -10, 0.5}, {100, -10, 0.5}, {-10, 100, 0.5}}, glm::vec3(0.5f)}});
-}
+Trace covered_bin() { return pixel_trace(32, 32, {covering(0.5)}); }
 
-std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
-  for (const Buffer& buffer : result.buffers)
-    if (buffer.name == name) return buffer.peak_bytes;
-  return 0;
-}
 std::uint64_t on_chip_bytes(const FrameResult& result) { return bytes_of(result, "open_pixels"); }
 
 // One triangle covers all pixels, so there are words of 6 bytes and no records. Words are in blocks of 16 pixels, which
@@ -76,9 +67,6 @@ TEST(Framebuffer, BinsWithoutRoomShareTheCachesOfRops) {
 // depths has 64 blocks, and one plane in each is a sector. In bins of 32 x 32 pixels each pixel is written once.
 // Without bins both layers are, and the second one reads the depths of the first. Triangles stay on chip.
 TEST(Framebuffer, WithoutBinsEachTriangleGoesOverTheWholeFrame) {
-  const auto covering = [](double depth) {
-    return PixelSpaceTriangle{{{-10, -10, depth}, {200, -10, depth}, {-10, 200, depth}}, glm::vec3(0.5f)};
-  };
   const Trace trace = pixel_trace(64, 64, {covering(0.75), covering(0.25)});
   MemoryParameters memory;
   memory.rop.bytes = 4096;

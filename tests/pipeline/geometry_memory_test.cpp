@@ -20,14 +20,6 @@ TriangleList random_list(std::uint32_t seed) {
   return list;
 }
 
-TEST(GeometryMemory, SetupIsWrittenOnce) {
-  StageCounters counters;
-  move_setup({}, 48, 4, 0, counters);
-  EXPECT_EQ(counters.dram_bytes, 64u + 4 * 88 + 128);
-  EXPECT_EQ(counters.sector_bytes, counters.dram_bytes);
-  EXPECT_EQ(counters.l2_bytes, counters.dram_bytes);
-}
-
 TEST(GeometryMemory, ABinReadsItsListAndTheSectorsOfItsTriangles) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     const TriangleList list = random_list(seed);
@@ -104,21 +96,6 @@ TEST(GeometryMemory, WhatTheRasterHasReadIsInL2) {
   EXPECT_EQ(counters.sector_bytes, 2 * 64u);
   EXPECT_EQ(counters.l2_bytes, 64u);
   EXPECT_EQ(counters.dram_bytes, 0u);
-}
-
-// Three records of 88 bytes are sectors 0 to 2, 2 to 5 and 5 to 8; a line has four sectors. Taken one after the other,
-// records 0 and 1 share a request to line 0, and records 1 and 2 one to line 1. In another order they do not.
-TEST(GeometryMemory, SortedSetupIsReadInTheOrderInWhichItIsTaken) {
-  const TriangleList list = {0, 1, 2};
-  StageCounters in_order, sorted;
-  TriangleFetches({}, list).read_setup({0, 1, 2}, in_order);
-  EXPECT_EQ(in_order.sector_bytes, 9 * 32u);
-  EXPECT_EQ(in_order.l2_bytes, 9 * 32u);
-  EXPECT_EQ(in_order.dram_bytes, 9 * 32u);
-  TriangleFetches({}, list).read_setup({0, 2, 1}, sorted);
-  EXPECT_EQ(sorted.sector_bytes, 11 * 32u) << "sectors 2 and 5 are asked for twice";
-  EXPECT_EQ(sorted.l2_bytes, 11 * 32u);
-  EXPECT_EQ(sorted.dram_bytes, 9 * 32u) << "L2 has them";
 }
 
 // A list of 5.6 MB in L2, which has 4.5 MiB. An order that returns to a line only after all others finds nothing there,

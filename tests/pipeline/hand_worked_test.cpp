@@ -6,13 +6,17 @@
 
 namespace beampipe::hand_worked_test {
 
+Trace read_sample(const char* name) {
+  return read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / name);
+}
+
 struct Bytes {
   const char* stage;
   std::uint64_t items_in, items_out, read, written, sectors, l2, dram;
 };
 
 void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>& expected, bool compression = true) {
-  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / sample);
+  const Trace trace = read_sample(sample);
   FrameInput run{1};
   run.memory.compression = compression;
   const FrameResult result = parse_technique(spec).render(trace, 0, run);
@@ -92,7 +96,7 @@ TEST(HandWorked, TriangleBeam) {
 // The triangle has half of the area of 3.5 x 3.5 pixels, and its number of samples is exactly proportional to its area.
 TEST(HandWorked, TriangleReference) {
   constexpr std::uint64_t kSamples = 4096 * 49 / 8;
-  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
+  const Trace trace = read_sample("paper_triangle.json");
   const FrameResult result = parse_technique("reference").render(trace, 0, {1});
   ASSERT_EQ(result.stages.size(), 3u);
   EXPECT_EQ(result.stages[1].items_in, 1u);
@@ -131,7 +135,7 @@ TEST(HandWorked, QuadsBeam) {
 
 // Pixel (2, 3), which the triangle covers entirely, and pixel (0, 0), which it does not touch.
 TEST(HandWorked, BytesOfAPixel) {
-  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
+  const Trace trace = read_sample("paper_triangle.json");
   const auto bytes = [&](const char* spec, std::size_t x, std::size_t y) {
     return parse_technique(spec).render(trace, 0, {1}).pixel_counters.at("bytes").at(y * 8 + x);
   };

@@ -1,8 +1,6 @@
 // The history of a pixel is the pixel: its weights times its colours are the bits of the picture, but for what formats
 // change.
 
-#include <algorithm>
-
 #include "pipeline/technique_table.h"
 #include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/surface_traces.h"

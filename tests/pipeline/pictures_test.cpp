@@ -1,47 +1,27 @@
 // Pictures whose pixels are known from closed forms, from a brute-force renderer, or from another technique.
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 #include "traces/scenes.h"
 
 namespace beampipe::pictures_test {
 
 const glm::vec3 kRed(1, 0, 0), kGreen(0, 1, 0), kBlue(0, 0, 1);
 
-TEST(Pictures, AnEmptyFrameIsTheBackground) {
-  const Trace trace = pixel_trace(5, 3, {}, glm::vec3(0.25f, 0.5f, 0.75f));
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "alpha", "msaa:1", "msaa:64", "reference"}) {
-    const Image image = picture(spec, trace);
-    ASSERT_EQ(image.width, 5u);
-    ASSERT_EQ(image.height, 3u);
-    for (std::uint32_t y = 0; y < 3; ++y)
-      for (std::uint32_t x = 0; x < 5; ++x) EXPECT_EQ(pixel(image, x, y), glm::vec3(0.25f, 0.5f, 0.75f)) << spec;
-  }
-}
-
-// Bins of four sizes, one of which has triangles.
+// Bins of four sizes, one of which has triangles; and a frame without any. Row 0 is on top.
 TEST(Pictures, BinsWithoutTrianglesAreTheBackground) {
   const glm::vec3 background(0.25f, 0.5f, 0.75f);
-  const Trace trace = pixel_trace(70, 38, quad(40, 4, 42, 7, 0.5, kRed), background);
-  for (const char* spec : {"beam", "beam:order=sorted", "msaa:4", "taa:4", "reference"}) {
-    const Image image = picture(spec, trace);
-    for (std::uint32_t y = 0; y < 38; ++y)
-      for (std::uint32_t x = 0; x < 70; ++x)
-        ASSERT_EQ(pixel(image, x, y), x >= 40 && x < 42 && y >= 4 && y < 7 ? kRed : background)
-            << spec << ", pixel " << x << ", " << y;
-  }
-}
-
-TEST(Pictures, RowZeroIsOnTop) {
-  const Trace trace = pixel_trace(4, 4, quad(0, 0, 4, 1, 0.5, kRed), kBlue);
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "casav:mask=exact", "msaa:4", "reference"}) {
-    const Image image = picture(spec, trace);
-    EXPECT_EQ(pixel(image, 2, 0), kRed) << spec;
-    EXPECT_EQ(pixel(image, 2, 1), kBlue) << spec;
+  for (const bool is_empty : {false, true}) {
+    const auto triangles = is_empty ? std::vector<PixelSpaceTriangle>{} : quad(40, 4, 42, 7, 0.5, kRed);
+    const Trace trace = pixel_trace(70, 38, triangles, background);
+    for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav:mask=exact", "alpha", "msaa:1",
+                             "msaa:4", "msaa:64", "taa:4", "reference"}) {
+      if (!is_empty && spec == std::string("alpha")) continue;  // the background leaks through the diagonal
+      const Image image = picture(spec, trace);
+      for (std::uint32_t y = 0; y < 38; ++y)
+        for (std::uint32_t x = 0; x < 70; ++x)
+          ASSERT_EQ(pixel(image, x, y), !is_empty && x >= 40 && x < 42 && y >= 4 && y < 7 ? kRed : background)
+              << spec << ", pixel " << x << ", " << y;
+    }
   }
 }
 
@@ -54,17 +34,6 @@ TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
   for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav:mask=exact", "reference"}) {
     const glm::vec3 found = pixel(picture(spec, trace), 1, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << spec;
-  }
-}
-
-TEST(Pictures, FrontHidesBackInAnyOrder) {
-  for (const bool back_first : {false, true}) {
-    std::vector<PixelSpaceTriangle> triangles =
-        back_first ? quad(0, 0, 4, 4, 0.7, kGreen) : quad(0, 0, 4, 4, 0.3, kRed);
-    append(triangles, back_first ? quad(0, 0, 4, 4, 0.3, kRed) : quad(0, 0, 4, 4, 0.7, kGreen));
-    const Trace trace = pixel_trace(4, 4, triangles, kBlue);
-    for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "msaa:8", "reference"})
-      EXPECT_EQ(pixel(picture(spec, trace), 1, 2), kRed) << spec << " " << back_first;
   }
 }
 

@@ -6,22 +6,23 @@
 
 namespace beampipe::technique_test {
 
-TEST(Technique, FramebufferBytesAreThePublishedOnes) {
-  // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
-  // take 80 and 320.
-  EXPECT_EQ(parse_technique("beam:order=sorted").framebuffer_bytes_per_pixel(), 42u);
-  EXPECT_EQ(parse_technique("casav").framebuffer_bytes_per_pixel(), 42u);
-  EXPECT_EQ(parse_technique("casav:storage=text").framebuffer_bytes_per_pixel(), 32u);
-  EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(), 80u);
-  EXPECT_EQ(parse_technique("msaa:32").framebuffer_bytes_per_pixel(), 320u);
-  EXPECT_EQ(parse_technique("alpha").framebuffer_bytes_per_pixel(), 10u);
-}
-
-TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 46u);
-  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 96u);
-  EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
-  EXPECT_EQ(parse_technique("z3:shape=128x3").framebuffer_bytes_per_pixel(), 74u);
+// With pixels in memory. The published ones are claims (tools/claims/published/), which have a test. A round of ACAA
+// has 16 samples at most.
+TEST(Technique, FramebufferBytes) {
+  const std::map<std::uint32_t, std::vector<const char*>> specs_of_bytes = {
+      {10, {"alpha"}},
+      {32, {"casav:storage=text"}},
+      {42, {"beam:order=sorted", "casav"}},
+      {46, {"beam"}},
+      {48, {"acaa:8,double=stencil"}},
+      {50, {"z3"}},
+      {72, {"acaa:16", "acaa:256"}},
+      {74, {"z3:shape=128x3"}},
+      {96, {"beam:order=stream", "msaa:8,color=rgba16f"}},
+      {320, {"msaa:32"}}};
+  for (const auto& [bytes, specs] : specs_of_bytes)
+    for (const char* const spec : specs)
+      EXPECT_EQ(parse_technique(spec).framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), bytes) << spec;
 }
 
 TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
@@ -68,62 +69,35 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"msaa:N has no option '16'; it has color, at, alpha, blend, prepass, motion, resolve and filter", {"msaa:8,16"}},
       {"msaa:N has no option ''; it has color, at, alpha, blend, prepass, motion, resolve and filter", {"msaa:8,"}},
       {"msaa:N has no option 'N'; it has color, at, alpha, blend, prepass, motion, resolve and filter", {"msaa:8,N=8"}},
-      {"color must be rgb16f, rgba16f, rgba8 or rgba32f", {"msaa:8,color=rgb8", "msaa:8,color"}},
-      {"at must be centre or centroid", {"msaa:8,at=corner"}},
+      {"color must be rgb16f, rgba16f, rgba8 or rgba32f", {"msaa:8,color"}},
       {"'prepass' is there twice", {"msaa:8,prepass,prepass"}},
       {"prepass must be without a value", {"msaa:8,prepass=1"}},
       {"beam has no option ''" + of_beam, {"beam:"}},
-      {"beam has no option '64'" + of_beam, {"beam:64"}},
-      {"beam has no option 'mask'" + of_beam, {"beam:mask=fast"}},
-      {"beam has no option 'fuzzy'" + of_beam, {"beam:fuzzy=mix"}},
       {"beam:order=sorted has no option 'mask'; it has bits, window, order and filter",
        {"beam:order=sorted,bits=32,mask=exact"}},
-      {"bits must be 32 or 256", {"beam:order=sorted,bits=64", "beam:order=sorted,bits="}},
-      {"pool must be 16, 24, 30, 40, 60, 80 or 128", {"beam:pool=7"}},
-      {"bits must be 32, 64, 128 or 256", {"beam:bits=48,pool=16"}},
+      {"bits must be 32 or 256", {"beam:order=sorted,bits="}},
       {"filter must be sampler, anisotropic, 1, 4 or 16", {"beam:filter=2", "msaa:8,filter=", "alpha:filter=yes"}},
       {"tolerance needs at=adaptive", {"beam:at=visible,tolerance=0.1"}},
-      {"beam has no option 'slots'" + of_beam, {"beam:slots=5"}},
-      {"'mask' is there twice", {"beam:mask=table,mask=table"}},
-      {"order must be near-first, sorted or stream", {"beam:order=primitive"}},
-      {"beam has no option 'rules'" + of_beam, {"beam:rules=paper"}},
       {"'order' is there twice", {"beam:order=stream,order=sorted"}},
       {"beam:order=stream has no option 'pool'; it has bits, order and filter", {"beam:order=stream,pool=16"}},
       {"layers needs order=near-first or order=stream", {"casav:layers=3", "casav:order=sorted,layers=1"}},
       {"sort needs order=sorted", {"casav:order=stream,sort=nearest", "casav:order=near-first,sort=centroid"}},
-      {"order must be sorted, near-first or stream", {"casav:order=sort"}},
       {"casav has no option 'bits'" + of_casav, {"casav:bits=64"}},
-      {"mask must be table or exact", {"casav:mask=fast"}},
-      {"tiny must be 1 or 3", {"casav:tiny=2"}},
-      {"overlap must be tiny, over, unbounded or transition", {"casav:overlap=none"}},
-      {"regional must be local or area", {"casav:regional=global"}},
-      {"'slab' is there twice", {"casav:slab=visible,slab=full"}},
       {"z3 has no option 'layers'; it has shape and filter", {"z3:layers=3"}},
-      {"shape must be 32x3 or 128x3", {"z3:shape=64x3"}},
       {"alpha has no option '1'; it has filter", {"alpha:1"}},
       {"reference has no option '64'; it has samples, set and filter", {"reference:64"}},
       {"deferred has no option ''; it has filter", {"deferred:"}},
       {acaa_rates, {"acaa", "acaa:512"}},
-      {"double must be none, stencil or saturate", {"acaa:8,double=yes"}},
       {"N of visibility:N must be 1, 2, 4, 8 or 16", {"visibility:3", "visibility:"}},
       {"'4' is there twice", {"visibility:4,4"}},
       {"visibility:N has no option '8'; it has filter", {"visibility:4,8"}},
-      {"shading must be visibility, deferred or forward", {"taa:8,shading=backward"}},
       {taa_rates, {"taa", "taa:32"}},
       {"blend must be a number from 0.001 to 1",
        {"taa:8,blend=0", "taa:8,blend=1.5", "taa:8,blend=nan", "taa:8,blend=x", "taa:8,blend=0.5x"}},
       {"dvm has no option '8'" + of_dvm, {"dvm:8"}},
-      {"dvm has no option ''" + of_dvm, {"dvm:=8"}},
-      {"dvm has no option 'seed'" + of_dvm, {"dvm:seed=1"}}};
+      {"dvm has no option ''" + of_dvm, {"dvm:=8"}}};
   for (const auto& [error, specs] : specs_of_error)
     for (const char* const spec : specs) EXPECT_EQ(error_of(spec), error);
-}
-
-TEST(Technique, DefaultsMayBeWritten) {
-  for (const char* spec :
-       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,pool=40",
-        "casav:order=sorted", "beam:order=stream", "casav:layers=3,order=stream", "casav:tiny=3"})
-    EXPECT_EQ(parse_technique(spec).spec, spec);
 }
 
 // A spec with samples, where the technique needs them, one option, and what the option needs: "msaa:8,at=centroid".

@@ -1,7 +1,8 @@
-// Rendering a trace's first frame in a test, and looking at what came out.
+// Rendering the first frame of a trace, such as those of test_traces.h, and looking at what came out.
 #pragma once
 
 #include "pipeline/technique.h"
+#include "tests/pipeline/test_traces.h"
 #include "tests/test.h"
 
 namespace beampipe {
@@ -13,6 +14,11 @@ inline FrameResult render_with(const std::string& spec, const Trace& trace, cons
   FrameInput run{1};
   run.memory = memory;
   return parse_technique(spec).render(trace, 0, run);
+}
+inline FrameResult render_unmodelled(const std::string& spec, const Trace& trace) {
+  MemoryParameters memory;
+  memory.modelled = false;
+  return render_with(spec, trace, memory);
 }
 inline Image picture(const std::string& spec, const Trace& trace) { return render(spec, trace).image; }
 
@@ -31,6 +37,14 @@ inline void expect_same(const FrameResult& a, const FrameResult& b, const std::s
   EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
   EXPECT_EQ(a.buffers, b.buffers) << what;
   EXPECT_EQ(a.bin_pixels, b.bin_pixels) << what;
+}
+
+// Of a buffer, or of the A-buffer; 0 where there is none.
+inline std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
+  if (name == "a_buffer") return result.a_buffer_peak_bytes;
+  for (const Buffer& buffer : result.buffers)
+    if (buffer.name == name) return buffer.peak_bytes;
+  return 0;
 }
 
 // Over R, G and B of all pixels.

@@ -46,6 +46,11 @@ inline Trace half_square() {
   return pixel_trace(8, 8, {{{{1.25, 1.25, 0.5}, {4.75, 4.75, 0.5}, {1.25, 4.75, 0.5}}, glm::vec3(1)}});
 }
 
+// A triangle over a frame of up to 64 x 64 pixels.
+inline PixelSpaceTriangle covering(double z, const glm::vec3& color = glm::vec3(0.5f)) {
+  return {{{-10, -10, z}, {200, -10, z}, {-10, 200, z}}, color};
+}
+
 // Two triangles that fill [x0, x1] x [y0, y1].
 inline std::vector<PixelSpaceTriangle> quad(double x0, double y0, double x1, double y1, double z,
                                             const glm::vec3& color) {

@@ -6,8 +6,6 @@
 #include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 #include "traces/scenes.h"
 
 namespace beampipe::texture_memory_test {
@@ -62,20 +60,6 @@ StageCounters stage_of(const char* spec, const Trace& trace, const std::string& 
 }
 
 StageCounters shade_of(const char* spec, const Trace& trace) { return stage_of(spec, trace, "shade"); }
-
-TEST(ReadCache, ReplacesTheLineThatWasNotUsedForTheLongestTime) {
-  ReadCache cache({4 * 128, 2, 128});        // two sets of two lines
-  EXPECT_EQ(cache.read(0, 0b0011), 0b0011);  // even lines share a set
-  EXPECT_EQ(cache.read(2, 0b0001), 0b0001);
-  EXPECT_EQ(cache.read(0, 0b0110), 0b0100) << "sectors are fetched one by one";
-  EXPECT_EQ(cache.read(1, 0b0001), 0b0001);
-  EXPECT_EQ(cache.read(4, 0b0001), 0b0001) << "takes the place of line 2";
-  EXPECT_EQ(cache.read(0, 0b0111), 0);
-  EXPECT_EQ(cache.read(2, 0b0001), 0b0001);
-  EXPECT_EQ(cache.read(1, 0b0001), 0) << "the other set";
-  cache.clear();
-  EXPECT_EQ(cache.read(1, 0b0001), 0b0001);
-}
 
 TEST(TextureMemory, L2ServesBinsPassByPass) {
   MemoryParameters memory;
@@ -208,17 +192,6 @@ TEST(TextureMemory, WithoutAModelPicturesAndShadingsAreTheSame) {
         EXPECT_EQ(with.stages[i].texture_bytes, without.stages[i].texture_bytes) << scene << ' ' << spec;
       }
     }
-  }
-}
-
-TEST(TextureMemory, FlatFramesReadNoTexels) {
-  Trace flat = random_trace(40, 36, 60, 5);
-  Trace unused = flat;
-  unused.images = {square_image(8)};
-  for (const std::string& spec : example_specs()) {
-    const std::vector<StageCounters> stages = stages_of(spec, flat);
-    for (const StageCounters& stage : stages) EXPECT_EQ(stage.texture_bytes + stage.texture_sector_bytes, 0u) << spec;
-    EXPECT_EQ(stages, stages_of(spec, unused)) << spec;
   }
 }
 

@@ -2,12 +2,8 @@
 
 #include "pipeline/memory/dram_tally.h"
 
-#include <map>
-
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::dram_tally_test {
 namespace {
@@ -50,9 +46,6 @@ TEST(DramTally, ArraysAddUpToTheBytesOfStages) {
 // with one plane each, which is a sector. The second layer reads the depths of the first. The caches are those of ROPs,
 // so that L2 moves what DRAM does.
 TEST(DramTally, DepthsAreCompressedAndColoursAreNot) {
-  const auto covering = [](double depth) {
-    return PixelSpaceTriangle{{{-10, -10, depth}, {200, -10, depth}, {-10, 200, depth}}, glm::vec3(0.5f)};
-  };
   FrameInput run{1};
   run.memory.rop.bytes = 4096;
   run.memory.binned = false;

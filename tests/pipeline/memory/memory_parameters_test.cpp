@@ -3,8 +3,6 @@
 #include "pipeline/memory/block_cache.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::memory_parameters_test {
 
@@ -23,22 +21,6 @@ TEST(MemoryParameters, SmallerBinsAreThoseOfTheSpec) {
   expect_same(render_with("beam:bin=8", trace, memory), render_with("beam:bin=8", trace, {}), "bin=8");
   EXPECT_EQ(render_with("msaa:8", trace, memory).bin_pixels, 16u * 16);
   EXPECT_EQ(render_with("msaa:8", trace, memory).image.rgba, render_with("msaa:8", trace, {}).image.rgba);
-}
-
-TEST(MemoryParameters, CachesChangeTrafficAlone) {
-  const Trace trace = random_trace(64, 64, 400, 7);
-  for (const char* spec : {"beam:order=sorted", "beam:order=stream", "msaa:8", "acaa:8"}) {
-    MemoryParameters small;
-    small.l1 = {2048, 4, 128}, small.l2 = {4096, 4, 128}, small.rop = {4096, 4, 256};
-    const FrameResult with = render_with(spec, trace, small), without = render_with(spec, trace, {});
-    EXPECT_EQ(with.image.rgba, without.image.rgba) << spec;
-    EXPECT_GT(dram_bytes(with), dram_bytes(without)) << spec;
-    for (std::size_t i = 0; i < with.stages.size(); ++i) {
-      EXPECT_EQ(with.stages[i].logical_bytes(), without.stages[i].logical_bytes()) << spec;
-      EXPECT_EQ(with.stages[i].sector_bytes, without.stages[i].sector_bytes) << spec;
-      EXPECT_EQ(with.stages[i].ops, without.stages[i].ops) << spec;
-    }
-  }
 }
 
 // One pixel of 4 bytes, in the first of two sectors: read and written back whole.
@@ -86,7 +68,7 @@ TEST(MemoryParameters, EverySectorAndLineSizeCounts) {
   }
 }
 
-// What lets a sweep render once for several caches. Half of what a cache stands before is not enough for any of them.
+// What lets a sweep render once for several caches. Smaller ones change traffic alone.
 TEST(MemoryParameters, CachesThatHoldAllMoveTheSameBytes) {
   const std::vector<const char*> specs = {"beam", "beam:order=sorted", "beam:order=stream", "msaa:8", "acaa:8", "z3"};
   for (const Trace& trace : {random_trace(64, 64, 300, 7), random_surfaces(64, 64, 300, 8)}) {
@@ -110,7 +92,14 @@ TEST(MemoryParameters, CachesThatHoldAllMoveTheSameBytes) {
       tiny.l1 = {128, 1, 128}, tiny.l2 = {256, 2, 128}, tiny.rop = {256, 1, 256};
       const FrameResult thrashing = render_with(spec, trace, tiny);
       EXPECT_EQ(thrashing.cache_reach, most.cache_reach) << spec << ": it is the same, whatever the caches hold";
-      EXPECT_NE(thrashing.stages, most.stages) << spec;
+      EXPECT_EQ(thrashing.image.rgba, most.image.rgba) << spec;
+      EXPECT_GT(dram_bytes(thrashing), dram_bytes(most)) << spec;
+      for (std::size_t i = 0; i < most.stages.size(); ++i) {
+        EXPECT_EQ(thrashing.stages[i].logical_bytes(), most.stages[i].logical_bytes()) << spec;
+        EXPECT_EQ(thrashing.stages[i].ops, most.stages[i].ops) << spec;
+        if (most.stages[i].stage == StageId::bin_sort) continue;  // its lists go through DRAM where L2 is too small
+        EXPECT_EQ(thrashing.stages[i].sector_bytes, most.stages[i].sector_bytes) << spec;
+      }
     }
   }
 }

@@ -1,11 +1,8 @@
 // Records in memory, and a pool that the whole frame shares.
 #include "pipeline/memory/record_memory.h"
 
-#include "pipeline/technique.h"
 #include "pipeline/units/frame_pool.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::record_memory_test {
 

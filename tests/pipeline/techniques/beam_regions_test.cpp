@@ -3,8 +3,6 @@
 #include "pipeline/error_causes.h"
 #include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 #include "tests/thorough.h"
 
@@ -90,12 +88,6 @@ Trace random_stream(std::uint64_t seed, bool is_gray = false) {
   return trace;
 }
 
-Image in_one_thread(const std::string& spec, const Trace& trace) {
-  FrameInput run{1};
-  run.memory.modelled = false;
-  return parse_technique(spec).render(trace, 0, run).image;
-}
-
 // Every pixel of these frames has edges, half of them where planes cross.
 TEST(BeamRegions, RandomStreamsAreAsGoodAsManySamples) {
   double of_beam = 0, of_msaa = 0, of_small = 0, of_few = 0;
@@ -104,8 +96,10 @@ TEST(BeamRegions, RandomStreamsAreAsGoodAsManySamples) {
     const Trace trace = random_stream(seed);
     if (!needs_api_order(trace, trace.frames[0])) continue;
     ++in_order;
-    const Image reference = in_one_thread("reference", trace);
-    const auto squares = [&](const char* spec) { return std::pow(rmse(in_one_thread(spec, trace), reference), 2); };
+    const Image reference = render_unmodelled("reference", trace).image;
+    const auto squares = [&](const char* spec) {
+      return std::pow(rmse(render_unmodelled(spec, trace).image, reference), 2);
+    };
     of_beam += squares("beam");
     of_msaa += squares("msaa:128");
     of_small += squares("beam:bits=32,pool=16");

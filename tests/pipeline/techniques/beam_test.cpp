@@ -1,10 +1,7 @@
 // The beam in near-first order: memory of a fixed size, however many triangles meet in a pixel, and what its pictures
 // do not depend on.
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::beam_test {
 
@@ -140,11 +137,15 @@ TEST(Beam, PicturesAreNearTheReference) {
   const Image reference = picture("reference", trace);
   EXPECT_LT(rmse(picture("beam", trace), reference), 0.5 * rmse(picture("msaa:64", trace), reference));
   EXPECT_LT(rmse(picture("beam:order=stream", trace), reference), rmse(picture("msaa:64", trace), reference));
+  const double sorted = rmse(picture("beam:order=sorted", trace), reference);
+  EXPECT_LT(sorted, 0.5 * rmse(picture("msaa:1", trace), reference));
+  EXPECT_LT(sorted, rmse(picture("alpha", trace), reference));
 }
 
-// The raster stage reads setup triangles of 88 bytes in the order in which it takes them. Three triangles, of which the
-// last one in the trace comes second, are 11 sectors, as in GeometryMemory.SortedSetupIsReadInTheOrderInWhichItIsTaken;
-// in the order of the trace they are 9. The list of 12 bytes is written and read.
+// The raster stage reads setup triangles of 88 bytes in the order in which it takes them. Three of them are sectors 0
+// to 2, 2 to 5 and 5 to 8; a line has four sectors. Taken one after the other, records 0 and 1 share a request to line
+// 0, and records 1 and 2 one to line 1. If the last one in the trace comes second, sectors 2 and 5 are asked for twice,
+// and L2 has them. The list of 12 bytes is written and read.
 TEST(Beam, SetupIsReadFromNearToFar) {
   for (const bool in_order : {true, false}) {
     std::vector<PixelSpaceTriangle> triangles;
@@ -152,6 +153,7 @@ TEST(Beam, SetupIsReadFromNearToFar) {
       triangles.push_back({{{1, 1, z}, {7, 1, z}, {1, 7, z}}, glm::vec3(1)});
     const StageCounters raster = stage_of(render("beam", pixel_trace(8, 8, triangles)), "conservative_raster");
     EXPECT_EQ(raster.sector_bytes, (in_order ? 9u : 11u) * 32 + 2 * 32);
+    EXPECT_EQ(raster.l2_bytes, raster.sector_bytes);
     EXPECT_EQ(raster.dram_bytes, 9u * 32 + 2 * 32);
   }
 }

@@ -1,14 +1,12 @@
 // The published rules, and alpha alone.
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::casav_test {
 
 TEST(Casav, CountsAnAggregateForEachFragment) {
-  // As in Beam.CountsEveryTouchedPixel. Pairs without area are dropped after conservative_raster.
+  // Rows 1 to 4 have 1, 2, 3 and 4 pixels with a part of the triangle. Pairs without area are dropped after
+  // conservative_raster.
   const std::uint64_t with_area = 1 + 2 + 3 + 4;
   // The published rules shade in quads. Pixels 1..4 lie in the quads 0, 1 and 2 of each axis. The lower left half of
   // these 3 x 3 quads has 6 quads of 4 lanes.

@@ -1,9 +1,6 @@
 // The reference against a renderer that shares no code with it.
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::reference_test {
 

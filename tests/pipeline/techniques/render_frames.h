@@ -1,8 +1,6 @@
 // Rendering with techniques that accumulate over frames.
 #pragma once
 
-#include <string>
-
 #include "tests/pipeline/test_pictures.h"
 
 namespace beampipe {

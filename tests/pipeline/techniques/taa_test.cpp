@@ -2,10 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::taa_test {

@@ -2,10 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::temporal_test {
@@ -29,16 +26,11 @@ void expect_shifted(const std::string& spec, const Trace& before, const Trace& a
   EXPECT_EQ(history.frames, 2u);
 }
 
-TEST(Temporal, ReprojectionFollowsTheCamera) {
-  Trace after = columns();
-  after.frames[0].view[3][0] = 1;
-  for (const char* spec : {"taa:1,blend=0.001", "dvm:blend=0.001"}) expect_shifted(spec, columns(), after);
-}
-
-TEST(Temporal, ReprojectionFollowsADrawUnderAStillCamera) {
-  Trace after = columns();
-  after.frames[0].draws[0].transform[3][0] = 1;
-  for (const char* spec : {"taa:1,blend=0.001", "dvm:blend=0.001"}) expect_shifted(spec, columns(), after);
+TEST(Temporal, ReprojectionFollowsTheCameraAndDrawsUnderAStillOne) {
+  Trace camera = columns(), draw = columns();
+  camera.frames[0].view[3][0] = draw.frames[0].draws[0].transform[3][0] = 1;
+  for (const Trace& after : {camera, draw})
+    for (const char* spec : {"taa:1,blend=0.001", "dvm:blend=0.001"}) expect_shifted(spec, columns(), after);
 }
 
 TEST(Temporal, ReprojectionFollowsVertices) {

@@ -1,8 +1,6 @@
 // One sample per pixel, shaded after visibility is known: visibility and deferred.
 
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::visibility_test {
 
@@ -16,23 +14,17 @@ TEST(Visibility, ThePictureIsThatOfOneSample) {
 TEST(Visibility, ShadesEveryVisiblePixelOnceWithoutHelpers) {
   std::vector<PixelSpaceTriangle> triangles = quad(0, 0, 8, 8, 0.6, glm::vec3(1, 0, 0));
   append(triangles, quad(2, 2, 6, 6, 0.3, glm::vec3(0, 1, 0)));
-  const FrameResult found = render("visibility", pixel_trace(8, 8, triangles));
-  EXPECT_EQ(stage_of(found, "shade").lanes_used, 64u);
-  EXPECT_EQ(stage_of(found, "shade").lanes_issued, 64u);
-  EXPECT_EQ(stage_of(found, "light").items_in, 64u);
+  for (const char* spec : {"visibility", "dvm"}) {
+    const FrameResult found = render(spec, pixel_trace(8, 8, triangles));
+    EXPECT_EQ(stage_of(found, "shade").lanes_used, 64u) << spec;
+    EXPECT_EQ(stage_of(found, "shade").lanes_issued, 64u) << spec;
+    EXPECT_EQ(stage_of(found, "light").items_in, 64u) << spec;
+  }
 }
 
 TEST(Deferred, ThePictureIsThatOfVisibility) {
   const Trace trace = random_trace(40, 30, 100, 2);
   EXPECT_EQ(picture("deferred", trace).rgba, picture("visibility", trace).rgba);
-}
-
-// The second pass draws the same fragments and shades those that have the stored depth.
-TEST(Deferred, TheGeometryIsDrawnTwiceAndShadedOnce) {
-  const FrameResult one = render("visibility", half_square()), two = render("deferred", half_square());
-  EXPECT_EQ(both_passes(two, "sample_raster").items_in, 2 * stage_of(one, "sample_raster").items_in);
-  EXPECT_EQ(both_passes(two, "sample_raster").items_out, 2 * stage_of(one, "sample_raster").items_out);
-  EXPECT_EQ(stage_of(two, "shade").lanes_used, stage_of(one, "shade").lanes_used);
 }
 
 // Each pass sets up and rasterizes the triangle. The first one writes a depth of 4 bytes in each of 6 pixels, the other

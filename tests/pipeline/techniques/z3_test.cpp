@@ -1,9 +1,6 @@
 // Z3: the state of a pixel is read and written for each fragment, and merging loses little where it has to happen.
 
-#include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
-#include "tests/pipeline/test_traces.h"
-#include "tests/test.h"
 
 namespace beampipe::z3_test {
 
