@@ -35,11 +35,6 @@ class ArrayReaderTest : public FolderTest {
                bytes_of<std::uint8_t>({0, 10, 11, 255, 255, 255, 255, 128, 1, 2, 3, 0}) + std::string(15, '\0')) {
     write("b.bin", bytes_);
   }
-
-  Trace read_json(const Json& json) const { return read_trace(write("scene.json", json.dump())); }
-  std::string error_in(const Json& json) const {
-    return error_of([&] { read_json(json); });
-  }
   // With four bytes of the buffer replaced.
   std::string error_with_bytes(std::size_t at, const std::string& replacement) const {
     write("b.bin", std::string(bytes_).replace(at, replacement.size(), replacement));

@@ -43,13 +43,6 @@ TEST(ImageFile, ReadsBackWhatItWrites) {
   EXPECT_THROW(encode_png(TextureImage{}), std::runtime_error);
 }
 
-TEST(ImageFile, ReadsRowsFromTheTop) {
-  const PngSample sample{
-      .width = 2, .height = 2, .color_type = PNG_COLOR_TYPE_RGB, .rows = {{1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}}};
-  EXPECT_EQ(decode_image(png_bytes(sample)).texels,
-            (Texels{{1, 2, 3, 255}, {4, 5, 6, 255}, {7, 8, 9, 255}, {10, 11, 12, 255}}));
-}
-
 TEST(ImageFile, ReadsEveryPngColorType) {
   const std::vector<png_color> palette = {{10, 20, 30}, {40, 50, 60}, {70, 80, 90}};
   const png_color_16 grey_3{.index = 0, .red = 0, .green = 0, .blue = 0, .gray = 3};
@@ -154,12 +147,6 @@ TEST(ImageFile, RefusesOtherFiles) {
   EXPECT_EQ(error_in("\x89PNG"), "expected a PNG or JPEG file, found one that starts with \"\xef\xbf\xbdPNG\"");
   const std::vector<std::uint8_t> cmyk(4 * 64);
   EXPECT_EQ(error_in(jpeg_bytes(8, 8, cmyk, TJPF_CMYK, TJSAMP_444)), "expected a JPEG file in grey or RGB, found CMYK");
-}
-
-TEST(ImageFile, NamesThePlaceThatItIsGiven) {
-  EXPECT_EQ(decode_image(encode_png(random_image(2, 3)), "model.mtl: a.png").texels, random_image(2, 3).texels);
-  EXPECT_EQ(message_of<TraceError>([] { decode_image("GIF", "model.mtl: a.png"); }),
-            "model.mtl: a.png: expected a PNG or JPEG file, found one that starts with \"GIF\"");
 }
 
 TEST(ImageFile, RefusesFilesThatEndEarly) {

@@ -26,10 +26,6 @@ class ProgramReaderTest : public FolderTest {
     for (int i = 0; i < 48; ++i) bytes += static_cast<char>(i % 5 == 4 ? 0xff : i);
     write("b.bin", bytes);
   }
-  Trace read_json(const Json& json) const { return read_trace(write("scene.json", json.dump())); }
-  std::string error_in(const Json& json) const {
-    return error_of([&] { read_json(json); });
-  }
   const Json programs_ = Json::parse(kPrograms);
 };
 

@@ -102,10 +102,6 @@ class SchemaTest : public FolderTest {
 
   const Json& complete(int version) const { return complete_[version - 1]; }
 
-  std::string error_in(const Json& json) const {
-    return error_of([&] { read_trace(write("scene.json", json.dump())); });
-  }
-
   // Calls visit(version, pointer, value) for every value of the complete traces that is in an object.
   template <class Visit>
   void each_member(Visit visit) const {
@@ -183,50 +179,32 @@ TEST_F(SchemaTest, WrongTypesAreErrorsEverywhere) {
 }
 
 TEST_F(SchemaTest, RequiredKeysAreRequired) {
-  for (const char* pointer : {"/beampipe_trace",
-                              "/meshes",
-                              "/frames",
-                              "/buffers/b/file",
-                              "/buffers/b/bytes",
-                              "/meshes/inline/positions",
-                              "/meshes/inline/indices",
-                              "/meshes/clip/positions4/buffer",
-                              "/meshes/clip/positions4/offset",
-                              "/meshes/clip/positions4/count",
-                              "/meshes/clip/positions4/type",
-                              "/materials/m/base_texture/image",
-                              "/frames/0/width",
-                              "/frames/0/height",
-                              "/frames/0/draws",
-                              "/frames/0/camera/eye",
-                              "/frames/0/camera/target",
-                              "/frames/0/camera/up",
-                              "/frames/0/camera/fovy_deg",
-                              "/frames/0/camera/near",
-                              "/frames/0/camera/far",
-                              "/frames/0/lights/0/direction",
-                              "/frames/0/ambient/sky",
-                              "/frames/0/ambient/ground",
-                              "/frames/0/draws/0/mesh",
-                              "/frames/0/draws/1/state/blend/source",
-                              "/frames/0/draws/1/state/blend/destination",
-                              "/frames/0/passes/0/name",
-                              "/frames/0/passes/0/kept",
-                              "/programs/0/name",
-                              "/programs/0/spirv",
-                              "/program_images/0/texels",
-                              "/frames/0/draws/2/program/program",
-                              "/frames/0/draws/2/program/buffers/0/bytes",
-                              "/frames/0/left_out/0/reason",
-                              "/frames/1/view",
-                              "/frames/1/projection"}) {
-    const Pointer at(pointer);
-    Json trace = complete(2);
-    trace.at(at.parent_pointer()).erase(at.back());
-    const std::string parent = at.parent_pointer().to_string();
-    EXPECT_EQ(error_in(trace), "scene.json: " + (parent.empty() ? "/" : parent) + ": expected the key \"" + at.back() +
-                                   "\", found none");
-  }
+  const std::pair<const char*, std::vector<const char*>> required[] = {
+      {"", {"beampipe_trace", "meshes", "frames"}},
+      {"/buffers/b", {"file", "bytes"}},
+      {"/meshes/inline", {"positions", "indices"}},
+      {"/meshes/clip/positions4", {"buffer", "offset", "count", "type"}},
+      {"/materials/m/base_texture", {"image"}},
+      {"/frames/0", {"width", "height", "draws"}},
+      {"/frames/0/camera", {"eye", "target", "up", "fovy_deg", "near", "far"}},
+      {"/frames/0/lights/0", {"direction"}},
+      {"/frames/0/ambient", {"sky", "ground"}},
+      {"/frames/0/draws/0", {"mesh"}},
+      {"/frames/0/draws/1/state/blend", {"source", "destination"}},
+      {"/frames/0/passes/0", {"name", "kept"}},
+      {"/programs/0", {"name", "spirv"}},
+      {"/program_images/0", {"texels"}},
+      {"/frames/0/draws/2/program", {"program"}},
+      {"/frames/0/draws/2/program/buffers/0", {"bytes"}},
+      {"/frames/0/left_out/0", {"reason"}},
+      {"/frames/1", {"view", "projection"}}};
+  for (const auto& [parent, keys] : required)
+    for (const char* const key : keys) {
+      Json trace = complete(2);
+      trace.at(Pointer(parent)).erase(key);
+      EXPECT_EQ(error_in(trace), std::string("scene.json: ") + (*parent ? parent : "/") + ": expected the key \"" +
+                                     key + "\", found none");
+    }
 }
 
 }  // namespace beampipe::schema_test

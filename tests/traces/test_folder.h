@@ -36,6 +36,16 @@ class FolderTest : public testing::Test {
     return without_folder(message_of<TraceError>(call));
   }
 
+  // As text in scene.json.
+  template <typename Json>
+  Trace read_json(const Json& json) const {
+    return read_trace(write("scene.json", json.dump()));
+  }
+  template <typename Json>
+  std::string error_in(const Json& json) const {
+    return error_of([&] { read_json(json); });
+  }
+
   std::string without_folder(std::string message) const {
     const std::string prefix = folder_.string() + "/";
     for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());

@@ -6,13 +6,14 @@ namespace beampipe::triangulate_test {
 
 using Corners = std::vector<glm::vec3>;
 
-double area(const Corners& p, const glm::uvec3& t) {
-  return 0.5 * glm::length(glm::cross(glm::dvec3(p[t.y] - p[t.x]), glm::dvec3(p[t.z] - p[t.x])));
-}
-
-double total_area(const Corners& corners) {
+// Of triangles that all turn about the axis as the polygon does: counter-clockwise, or clockwise if it is reversed.
+double total_area(const Corners& p, int axis, bool is_reversed = false) {
   double sum = 0;
-  for (const glm::uvec3& t : triangulate(corners)) sum += area(corners, t);
+  for (const glm::uvec3& t : triangulate(p)) {
+    const double area = 0.5 * glm::cross(glm::dvec3(p[t.y] - p[t.x]), glm::dvec3(p[t.z] - p[t.x]))[axis];
+    EXPECT_TRUE(is_reversed ? area <= 0 : area >= 0);
+    sum += std::abs(area);
+  }
   return sum;
 }
 
@@ -28,9 +29,9 @@ TEST(Triangulate, CoversAStarOnceInEveryPlane) {
     }
     const double expected = 10 * 0.5 * 3 * 1 * std::sin(3.14159265358979 / 5);
     EXPECT_EQ(triangulate(star).size(), 8u);
-    EXPECT_NEAR(total_area(star), expected, 1e-4) << axis;  // overlaps would add to it
-    Corners reversed(star.rbegin(), star.rend());
-    EXPECT_NEAR(total_area(reversed), expected, 1e-4) << axis;
+    EXPECT_NEAR(total_area(star, axis), expected, 1e-4) << axis;  // overlaps would add to it
+    const Corners reversed(star.rbegin(), star.rend());
+    EXPECT_NEAR(total_area(reversed, axis, true), expected, 1e-4) << axis;
   }
 }
 
@@ -43,7 +44,17 @@ TEST(Triangulate, CutsACombThatHasFewEars) {
     }
   }
   EXPECT_EQ(triangulate(comb).size(), comb.size() - 2);
-  EXPECT_NEAR(total_area(comb), 9 + 5 * 4, 1e-9);
+  EXPECT_NEAR(total_area(comb, 2), 9 + 5 * 4, 1e-9);
+}
+
+// An arrow far from the origin, whose dent a fan from its second corner would fill; from any corner, in both windings.
+TEST(Triangulate, FillsNoDents) {
+  Corners arrow = {{100, 50, 7}, {104, 50, 7}, {101, 51, 7}, {100, 54, 7}};
+  for (int i = 0; i < 4; ++i) {
+    std::rotate(arrow.begin(), arrow.begin() + 1, arrow.end());
+    EXPECT_NEAR(total_area(arrow, 2), 4, 1e-6);
+    EXPECT_NEAR(total_area(Corners(arrow.rbegin(), arrow.rend()), 2, true), 4, 1e-6);
+  }
 }
 
 TEST(Triangulate, GivesTheSameNumberOfTrianglesForAnyPolygon) {

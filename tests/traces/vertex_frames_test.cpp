@@ -51,14 +51,4 @@ TEST(VertexFrames, FlatNormalsBelongToOneTriangle) {
   EXPECT_EQ(mesh.uvs[0][5], glm::vec2(3, 0));
 }
 
-TEST(VertexFrames, MendsOnlyBrokenNormals) {
-  Mesh mesh = square();
-  mesh.normals[1] = {1, 0, 0};
-  mesh.normals[2] = {0, 0, 0};
-  EXPECT_EQ(mend_normals(mesh), 1u);
-  EXPECT_EQ(mesh.normals[1], glm::vec3(1, 0, 0));
-  EXPECT_EQ(mesh.normals[2], glm::vec3(0, 0, 1));
-  EXPECT_EQ(mend_normals(mesh), 0u);
-}
-
 }  // namespace beampipe::vertex_frames_test
