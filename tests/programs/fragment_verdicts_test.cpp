@@ -9,7 +9,6 @@
 namespace beampipe::fragment_verdicts_test {
 
 constexpr std::uint32_t kSide = 4;   // pixels
-constexpr float kRounding = 2e-3f;   // of fp16 colours
 constexpr float kOfMasks = 0x1p-6f;  // what positions tell of a part of a triangle's area, in beam
 const glm::vec3 kBlack(0.0f);
 
@@ -43,23 +42,7 @@ OpStore %depth %z
                          .modes = "OpExecutionMode %main DepthReplacing\n"};
 
 // Without pixels whose place is left of x = 5 / 2.
-const ShaderParts kDiscard{.body = R"(
-%at = OpLoad %v4 %coord
-%x = OpCompositeExtract %float %at 0
-%is_left = OpFOrdLessThan %bool %x %end
-OpSelectionMerge %goes_on None
-OpBranchConditional %is_left %leave %goes_on
-%leave = OpLabel
-OpKill
-%goes_on = OpLabel
-)" + kColor,
-                           .globals = R"(
-%to_coord = OpTypePointer Input %v4
-%coord = OpVariable %to_coord Input
-%end = OpConstant %float 2.5
-)",
-                           .decorations = "OpDecorate %coord BuiltIn FragCoord\n",
-                           .interface = "%coord"};
+const ShaderParts kDiscard = discarding_left_of("2.5", kColor);
 
 // The mask that it has, and the samples that the fragment covers.
 ShaderParts masked(std::uint32_t mask) {
@@ -112,18 +95,10 @@ struct Scene : ProgramTrace {
   // expected(x): what the target stores in a column.
   void expect(const std::string& spec, const std::function<glm::vec3(std::uint32_t)>& expected,
               float tolerance = kRounding) const {
-    SCOPED_TRACE(spec);
     const ProgramSet programs(trace);
     for (std::uint32_t i = 0; i < trace.programs.size(); ++i) ASSERT_EQ(programs.error(i), "");
-    const std::vector<glm::vec3> found = stored_picture(rendered(trace, spec), trace.frames[0].target);
-    for (std::uint32_t i = 0; i < found.size(); ++i) {
-      const glm::vec3 wanted = expected(i % kSide);
-      for (int c = 0; c < 3; ++c) {
-        if (std::isnan(wanted[c])) continue;
-        ASSERT_NEAR(found[i][c], wanted[c], tolerance)
-            << "pixel " << i % kSide << ", " << i / kSide << " channel " << c;
-      }
-    }
+    expect_picture(
+        trace, spec, [&](auto x, auto) { return expected(x); }, tolerance);
   }
   void expect_all(const std::function<glm::vec3(std::uint32_t)>& expected) const {
     for (const char* spec : {"msaa:1", "msaa:4", "msaa:32", "reference", "beam"}) expect(spec, expected);

@@ -10,23 +10,6 @@ namespace beampipe::program_draws_test {
 
 const char* const kSpecs[] = {"msaa:1",         "msaa:4", "reference",  "beam",
                               "msaa:8,prepass", "casav",  "visibility", "deferred"};
-constexpr float kRounding = 2e-3f;  // of fp16 colours
-
-// expected(x, y): what the target stores in a pixel; NaN: anything.
-template <class Expected>
-void expect_picture(const Trace& trace, const std::string& spec, Expected&& expected, float tolerance = kRounding) {
-  SCOPED_TRACE(spec);
-  const std::vector<glm::vec3> found = stored_picture(rendered(trace, spec), trace.frames[0].target);
-  const std::uint32_t width = trace.frames[0].width;
-  for (std::uint32_t i = 0; i < found.size(); ++i) {
-    const glm::vec3 wanted = expected(i % width, i / width);
-    for (int c = 0; c < 3; ++c) {
-      if (std::isnan(wanted[c])) continue;
-      ASSERT_NEAR(found[i][c], wanted[c], tolerance) << "pixel " << i % width << ", " << i / width << " channel " << c;
-    }
-  }
-}
-
 const std::string kStoreA = "OpStore %out %va\n";
 const ShaderParts kConstant{.body = "OpStore %out %color\n", .globals = R"(
 %quarter = OpConstant %float 0.25
@@ -233,14 +216,6 @@ OpStore %out %sum
   expect("msaa:128", 1.0f / 4);
 }
 
-const std::string kFragCoord = R"(
-%to_coord = OpTypePointer Input %v4
-%coord = OpVariable %to_coord Input
-%scale_xy = OpConstant %float 0.0625
-%scale = OpConstantComposite %v4 %scale_xy %scale_xy %f1 %f1
-%five = OpConstant %float 5
-)";
-
 TEST(ProgramDraws, FragCoordIsThePlaceAndDepth) {
   ProgramTrace scene(16, 8,
                      ShaderParts{.body = R"(
@@ -248,8 +223,11 @@ TEST(ProgramDraws, FragCoordIsThePlaceAndDepth) {
 %color = OpFMul %v4 %at %scale
 OpStore %out %color
 )",
-                                 .globals = kFragCoord,
-                                 .decorations = "OpDecorate %coord BuiltIn FragCoord\n",
+                                 .globals = kFragCoord + R"(
+%scale_xy = OpConstant %float 0.0625
+%scale = OpConstantComposite %v4 %scale_xy %scale_xy %f1 %f1
+)",
+                                 .decorations = kFragCoordDecoration,
                                  .interface = "%coord"});
   scene.fill();
   const auto expected = [](auto x, auto y) {
@@ -259,23 +237,8 @@ OpStore %out %color
     expect_picture(scene.trace, spec, expected, std::string(spec) == "msaa:1" ? kRounding : 0.02f);
 }
 
-const ShaderParts kDiscard{.body = R"(
-%at = OpLoad %v4 %coord
-%x = OpCompositeExtract %float %at 0
-%is_left = OpFOrdLessThan %bool %x %five
-OpSelectionMerge %goes_on None
-OpBranchConditional %is_left %leave %goes_on
-%leave = OpLabel
-OpKill
-%goes_on = OpLabel
-OpStore %out %f1111
-)",
-                           .globals = kFragCoord,
-                           .decorations = "OpDecorate %coord BuiltIn FragCoord\n",
-                           .interface = "%coord"};
-
 TEST(ProgramDraws, DiscardedFragmentsAreNotThere) {
-  ProgramTrace scene(8, 8, kDiscard);
+  ProgramTrace scene(8, 8, discarding_left_of("5", "OpStore %out %f1111\n"));
   scene.fill();
   scene.trace.frames[0].background = glm::vec3(0.25f);
   const float background = static_cast<float>(encoded_as_srgb(0.25));
@@ -286,7 +249,7 @@ TEST(ProgramDraws, DiscardedFragmentsAreNotThere) {
 // The middle of each pixel is discarded, and the surface around it is white.
 TEST(ProgramDraws, HolesInTheMiddleOfAPixelHideNoColor) {
   ProgramTrace scene(4, 4,
-                     ShaderParts{.body = R"(
+                     ShaderParts{.body = discarding(R"(
 %at = OpLoad %v4 %coord
 %in_pixel = OpExtInst %v4 %glsl Fract %at
 %from = OpFSub %v4 %in_pixel %middle
@@ -294,20 +257,15 @@ TEST(ProgramDraws, HolesInTheMiddleOfAPixelHideNoColor) {
 %x = OpCompositeExtract %float %far 0
 %y = OpCompositeExtract %float %far 1
 %most = OpExtInst %float %glsl FMax %x %y
-%is_hole = OpFOrdLessThan %bool %most %eighth
-OpSelectionMerge %goes_on None
-OpBranchConditional %is_hole %leave %goes_on
-%leave = OpLabel
-OpKill
-%goes_on = OpLabel
-OpStore %out %f1111
+%is_discarded = OpFOrdLessThan %bool %most %eighth
 )",
+                                                    "OpStore %out %f1111\n"),
                                  .globals = kFragCoord + R"(
 %eighth = OpConstant %float 0.125
 %half_ = OpConstant %float 0.5
 %middle = OpConstantComposite %v4 %half_ %half_ %f0 %f0
 )",
-                                 .decorations = "OpDecorate %coord BuiltIn FragCoord\n",
+                                 .decorations = kFragCoordDecoration,
                                  .interface = "%coord"});
   scene.fill();
   // A sixteenth is missing, which 16 places of a pixel do not see.

@@ -1,13 +1,9 @@
 // Traces with fragment shaders of their own, from SPIR-V's assembly language.
 #pragma once
 
-#include <bit>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "pipeline/technique.h"
 #include "tests/stages/spirv/shader_text.h"
+#include "tests/test.h"
 #include "traces/srgb.h"
 #include "traces/trace.h"
 
@@ -75,6 +71,53 @@ inline std::vector<glm::vec3> stored_picture(const FrameResult& result, ColorTar
 
 inline FrameResult rendered(const Trace& trace, const std::string& spec, int threads = 1) {
   return parse_technique(spec).render(trace, 0, {.threads = threads});
+}
+
+constexpr float kRounding = 2e-3f;  // of fp16 colours
+
+// expected(x, y): what the target stores in a pixel; NaN: anything.
+template <class Expected>
+void expect_picture(const Trace& trace, const std::string& spec, Expected&& expected, float tolerance = kRounding) {
+  SCOPED_TRACE(spec);
+  const std::vector<glm::vec3> found = stored_picture(rendered(trace, spec), trace.frames[0].target);
+  const std::uint32_t width = trace.frames[0].width;
+  for (std::uint32_t i = 0; i < found.size(); ++i) {
+    const glm::vec3 wanted = expected(i % width, i / width);
+    for (int c = 0; c < 3; ++c) {
+      if (std::isnan(wanted[c])) continue;
+      ASSERT_NEAR(found[i][c], wanted[c], tolerance) << "pixel " << i % width << ", " << i / width << " channel " << c;
+    }
+  }
+}
+
+// With these a shader knows its place.
+const std::string kFragCoord = R"(
+%to_coord = OpTypePointer Input %v4
+%coord = OpVariable %to_coord Input
+)";
+const std::string kFragCoordDecoration = "OpDecorate %coord BuiltIn FragCoord\n";
+
+// Discards where `is_discarded`, which `body` computes, and goes on with `rest`.
+inline std::string discarding(const std::string& body, const std::string& rest) {
+  return body + R"(
+OpSelectionMerge %goes_on None
+OpBranchConditional %is_discarded %leave %goes_on
+%leave = OpLabel
+OpKill
+%goes_on = OpLabel
+)" + rest;
+}
+// Left of this place.
+inline ShaderParts discarding_left_of(const std::string& x, const std::string& rest) {
+  return {.body = discarding(R"(
+%at = OpLoad %v4 %coord
+%x = OpCompositeExtract %float %at 0
+%is_discarded = OpFOrdLessThan %bool %x %end
+)",
+                             rest),
+          .globals = kFragCoord + "%end = OpConstant %float " + x + "\n",
+          .decorations = kFragCoordDecoration,
+          .interface = "%coord"};
 }
 
 }  // namespace beampipe
