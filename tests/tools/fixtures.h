@@ -65,6 +65,11 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
   if (!stream.flush()) ADD_FAILURE() << "cannot write " << file;
 }
 
+// Expects that the text has all of these parts.
+inline void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) EXPECT_NE(text.find(part), text.npos) << part << " is missing in\n" << text;
+}
+
 // The text with `other` in place of the first `part`.
 inline std::string replaced(std::string text, const std::string& part, const std::string& other) {
   return text.replace(text.find(part), part.size(), other);

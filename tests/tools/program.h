@@ -6,10 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "tests/tools/fixtures.h"
 
 namespace beampipe {

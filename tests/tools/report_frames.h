@@ -1,9 +1,10 @@
-// What tests do with reports: read report.json, and change frames, which a report only adds.
+// What tests do with reports: read report.json, change frames, which a report only adds, and model no energy.
 #pragma once
 
 #include <cstddef>
 #include <string>
 
+#include "tools/evaluate/hardware.h"
 #include "tools/report/report_json.h"
 #include "traces/files/json.h"
 
@@ -27,6 +28,15 @@ void change_frames(TechniqueReport& result, const Change& change) {
     changed.push_back(frame);
   }
   result.frames = changed;
+}
+
+// The description of a Titan V as it may be, too.
+inline Json titan_without_energy() {
+  const Json whole = titan_v().json;
+  Json json = Json::object();
+  for (const auto& [key, value] : whole.members())
+    if (key != "energy") json[key] = value;
+  return json;
 }
 
 }  // namespace beampipe

@@ -1,8 +1,6 @@
 // Traces whose surfaces vary, for tests of how errors are split.
 #pragma once
 
-#include <string>
-
 #include "tests/tools/fixtures.h"
 #include "traces/files/image_file.h"
 

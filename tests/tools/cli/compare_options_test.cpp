@@ -1,6 +1,5 @@
 // What `compare` keeps for later, and what it measures, with the built program.
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli/program_fixture.h"
@@ -74,7 +73,7 @@ TEST_F(CompareOptionsTest, MeasuresTheReferenceItself) {
   const double of_reference = report["reference_error"].get<double>();
   EXPECT_DOUBLE_EQ(of_reference, report["results"][2]["error"]["rmse"].get<double>() / std::sqrt(2.0));
   EXPECT_GT(of_reference, 0);
-  EXPECT_NE(out_.find("RMSE of the reference itself: "), std::string::npos);
+  expect_parts(out_, {"RMSE of the reference itself: "});
   // The ladder does not grow for the second reference, and the range of a technique is no narrower.
   EXPECT_EQ(report["msaa_ladder"], plain["msaa_ladder"]);
   const Parsed &with = report["results"][0], &without = plain["results"][0];
@@ -99,17 +98,7 @@ TEST_F(CompareOptionsTest, MeasuresFromAFrameOn) {
   const Outcome late =
       run_program({"compare", path("soup.json"), "-t", "taa:4", "-o", path("late"), "--measure-from", "4"});
   EXPECT_EQ(late.exit_code, 2);
-  EXPECT_NE(late.err.find("--measure-from 4: expected fewer than the 4 frames"), std::string::npos) << late.err;
-}
-
-// A trace with matrices has one size, which may be said.
-TEST_F(CompareOptionsTest, TakesTheSizeThatATraceHas) {
-  const auto run = [&](const std::string& width) {
-    return run_program({"run", path("trace.json"), "-t", "msaa:1", "-o", path("out"), "--frames", "0", "--width", width,
-                        "--height", "12", "--force"});
-  };
-  EXPECT_EQ(run("20").exit_code, 0) << run("20").err;
-  EXPECT_NE(run("40").exit_code, 0);
+  expect_parts(late.err, {"--measure-from 4: expected fewer than the 4 frames"});
 }
 
 }  // namespace beampipe::compare_options_test

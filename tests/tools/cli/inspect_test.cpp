@@ -122,7 +122,7 @@ TEST_F(InspectTest, InTheApisOrderWeightsAreWhatDrawsHavePutIntoThePixel) {
   for (const Parsed& surface : pixels[0]["surfaces"]) EXPECT_FALSE(surface.contains("reference_weight"));
   EXPECT_EQ(pixels[0]["surfaces"].size(), pixels[0]["fragments"].size() + 1) << "the background, too";
   const std::string text = succeed({"inspect", path("trace.json"), "--pixel", "10,7", "-t", "msaa:4"});
-  EXPECT_NE(text.find("blended"), text.npos) << text;
+  expect_parts(text, {"blended"});
   EXPECT_EQ(text.find("causes"), text.npos) << "they are not known\n" << text;
   EXPECT_NE(text.find("Samples: what each fragment covers\n"), text.npos) << "nobody owns them\n" << text;
 }
@@ -155,7 +155,7 @@ TEST_F(InspectTest, ThePixelOfTheBackgroundIsTheBackground) {
   }
   const std::string text = succeed({"inspect", path("trace.json"), "--frame", "1", "--pixel", "7,0", "-t", "beam"});
   expect_readable(text);
-  EXPECT_NE(text.find("0 triangles touch it"), text.npos) << text;
+  expect_parts(text, {"0 triangles touch it"});
 }
 
 // Of two triangles that fill the pixel, the technique and the reference see the nearer one, and the other one says who

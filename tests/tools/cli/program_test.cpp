@@ -21,10 +21,6 @@ void expect_values(const Parsed& json, const std::vector<std::pair<const char*, 
   for (const auto& [place, value] : values) EXPECT_EQ(json.at(Parsed::json_pointer(place)), value) << place;
 }
 
-void expect_parts(const std::string& text, const Names& parts) {
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-}
-
 TEST_F(ProgramTest, HelpTeachesAndVersionIsOneLine) {
   expect_parts(succeed({"--help"}), {"beampipe compare fence.json -t beam"});
   for (const char* command : {"run", "compare"}) expect_parts(succeed({command, "--help"}), {"msaa:N"});
@@ -63,6 +59,7 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
     EXPECT_GT(bytes, 0);
     for (const Parsed& frame : result["frames"]) {
       EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / frame["image"].get<std::string>()));
+      EXPECT_FALSE(frame.contains("error"));
       EXPECT_EQ(frame["wall_ms"]["runs"], 3);
       EXPECT_LE(frame["wall_ms"]["min"], frame["wall_ms"]["median"]);
       EXPECT_LE(frame["wall_ms"]["median"], frame["wall_ms"]["max"]);
@@ -158,7 +155,7 @@ TEST_F(ProgramTest, CompareMeasuresAgainstTheReference) {
   EXPECT_EQ(json["results"][0]["equivalent_msaa"], 1.0);
   EXPECT_EQ(json["results"][1]["equivalent_msaa"], 8.0);
   EXPECT_EQ(json["results"][1]["equivalent_msaa_is_lower_bound"], false);
-  EXPECT_NE(table.find("EMR"), std::string::npos);
+  expect_parts(table, {"EMR"});
 }
 
 TEST_F(ProgramTest, CompareTakesALadderOfTheUsersChoice) {
@@ -194,15 +191,12 @@ TEST_F(ProgramTest, CompareFindsRatesByAnotherMetric) {
     EXPECT_EQ(ladder[1], (Parsed{{"samples", 2}, {"error", of_msaa_2}}));
     EXPECT_GT(ladder[0]["error"], ladder[2]["error"]);
     EXPECT_EQ(json["results"][1]["equivalent_msaa"], 2.0);
-    EXPECT_NE(table.find("EMR by "), std::string::npos);
+    expect_parts(table, {"EMR by "});
   }
   // A rung that is not among the techniques is measured as one of them would be.
   succeed({"compare", path("trace.json"), "-t", "msaa:1", "-o", path("one"), "--ladder", "1,2,4", "--metric", "flip"});
   EXPECT_EQ(parsed(folder_ / "one/report.json")["metric_msaa_ladder"],
             parsed(folder_ / "flip/report.json")["metric_msaa_ladder"]);
-  expect_error({"compare", path("trace.json"), "-t", "beam", "-o", path("x"), "--metric", "bias"}, 2, "--metric");
-  expect_error({"compare", path("trace.json"), "-t", "beam", "-o", path("x"), "--pixels-per-degree", "0"}, 2,
-               "--pixels-per-degree: expected a number in 1..1000, found 0");
 }
 
 TEST_F(ProgramTest, CompareExtendsItsLadderForTechniquesThatAreBetter) {
@@ -281,36 +275,7 @@ TEST_F(ProgramTest, InfoTellsWhatIsInTheTrace) {
   expect_parts(succeed({"info", path("trace.json")}), {"20 x 12"});
 }
 
-TEST_F(ProgramTest, InfoTellsWhatSurfacesAreMadeOf) {
-  Trace trace;
-  trace.images = {{.name = "wood", .width = 3, .height = 2, .texels = std::vector<glm::u8vec4>(6)}};
-  trace.materials.resize(3);
-  for (std::size_t i = 0; i < 3; ++i) trace.materials[i].name = std::to_string(i);
-  trace.materials[0].normal_texture.emplace();
-  trace.materials[0].alpha_mode = trace.materials[1].alpha_mode = AlphaMode::mask;
-  Mesh mesh;
-  mesh.name = "m";
-  mesh.positions.resize(1);
-  mesh.normals = {{0, 0, 1}};
-  mesh.uvs[0].resize(1);
-  trace.meshes = {mesh};
-  trace.frames.resize(1);
-  trace.frames[0].width = trace.frames[0].height = 4;
-  trace.frames[0].lighting.lights.resize(2);
-  trace.frames[0].lighting.ambient.emplace();
-  write_trace(trace, path("surfaces.json"));
-
-  const Parsed json = Parsed::parse(succeed({"info", path("surfaces.json"), "--json"}));
-  expect_values(json, {{"/images", Parsed::parse(R"([{"name": "wood", "width": 3, "height": 2}])")},
-                       {"/materials", {{"opaque", 1}, {"mask", 2}, {"blend", 0}, {"textured", 1}}},
-                       {"/meshes/0/attributes", {"normals", "uv0"}},
-                       {"/frames/0/lights", 2},
-                       {"/frames/0/ambient", true}});
-  expect_parts(succeed({"info", path("surfaces.json")}),
-               {"2 + ambient", "materials  opaque  mask  blend  with textures\n        3       1     2      0"});
-}
-
-TEST_F(ProgramTest, InfoTellsWhatWasCaptured) {
+TEST_F(ProgramTest, InfoTellsWhatSurfacesAreMadeOfAndWhatWasCaptured) {
   Trace trace;
   trace.source = {.program = "gears",
                   .api = "OpenGL",
@@ -319,17 +284,24 @@ TEST_F(ProgramTest, InfoTellsWhatWasCaptured) {
                   .tool = "",
                   .shading = "own",
                   .frame = 7};
-  Mesh mesh;
+  trace.images = {{.name = "wood", .width = 3, .height = 2, .texels = std::vector<glm::u8vec4>(6)}};
+  trace.program_images = {{.name = "map", .format = TexelFormat::R8_UNORM, .width = 2, .levels = 1, .texels = {0, 0}}};
+  trace.materials.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) trace.materials[i].name = std::to_string(i);
+  trace.materials[0].normal_texture.emplace();
+  trace.materials[0].alpha_mode = trace.materials[1].alpha_mode = AlphaMode::mask;
+  Mesh& mesh = trace.meshes.emplace_back();
   mesh.name = "clip";
   mesh.positions = {{-2, 2, 0}, {0, 2, 2}, {2, 0, 0}};
   mesh.ws = {2, 2, 1};
   mesh.triangles = {{0, 1, 2}};
   mesh.colors = {kDefaultColor};
-  trace.meshes = {mesh};
-  trace.images = {{.name = "captured", .width = 1, .height = 1, .texels = std::vector<glm::u8vec4>(1)}};
-  trace.program_images = {{.name = "wood", .format = TexelFormat::R8_UNORM, .width = 2, .levels = 1, .texels = {0, 0}}};
+  mesh.normals.assign(3, {0, 0, 1});
+  mesh.uvs[0].resize(3);
   Frame& frame = trace.frames.emplace_back();
   frame.width = frame.height = 4;
+  frame.lighting.lights.resize(2);
+  frame.lighting.ambient.emplace();
   frame.draws.resize(2);
   frame.draws[1].state.depth.test = false;
   frame.capture.passes = {{"shadow map", 512, 512, 3, 99, false, "not shown"}};
@@ -339,13 +311,18 @@ TEST_F(ProgramTest, InfoTellsWhatWasCaptured) {
   const Parsed json = Parsed::parse(succeed({"info", path("captured.json"), "--json"}));
   expect_values(json, {{"/source/program", "gears"},
                        {"/source/frame", 7},
+                       {"/images", Parsed::parse(R"([{"name": "wood", "width": 3, "height": 2},
+                                                     {"name": "map", "width": 2, "height": 1}])")},
+                       {"/materials", {{"opaque", 1}, {"mask", 2}, {"blend", 0}, {"textured", 1}}},
+                       {"/meshes/0/attributes", {"normals", "uv0"}},
+                       {"/frames/0/lights", 2},
+                       {"/frames/0/ambient", true},
                        {"/frames/0/state", {{"no depth test", 1}}},
                        {"/frames/0/capture/left_out/0/primitives", 40},
-                       {"/images", Parsed::parse(R"([{"name": "captured", "width": 1, "height": 1},
-                                                     {"name": "wood", "width": 2, "height": 1}])")},
                        {"/frames/0/bounds/max", {2.0, 1.0, 1.0}}});  // x / w
   expect_parts(succeed({"info", path("captured.json")}),
-               {"captured from gears, OpenGL, 2026-01-02, frame 7", "colours: own", "no depth test       1",
+               {"2 + ambient", "materials  opaque  mask  blend  with textures\n        3       1     2      0",
+                "captured from gears, OpenGL, 2026-01-02, frame 7", "colours: own", "no depth test       1",
                 "shadow map  512 x 512      3         99    no  not shown", "lines         2          40",
                 "1 mesh of 1 triangle, 2 images"});
 }
@@ -379,7 +356,6 @@ TEST_F(ProgramTest, ExportSoupWritesTheTrianglesThatAreSeen) {
     EXPECT_TRUE(clip[2] >= -1 && clip[2] <= 1);
     EXPECT_EQ(clip[3], 1.0f);
   }
-  expect_error({"export-soup", path("trace.json"), "--frame", "9", "-o", path("x.soup")}, 2, "--frame");
 }
 
 TEST_F(ProgramTest, ReportsSayWhichCommandMadeThem) {
@@ -392,18 +368,12 @@ TEST_F(ProgramTest, APageOfEarlierResultsIsNoted) {
   const Names command = {"run", path("trace.json"), "-t", "msaa:1", "--no-memory-model", "--force", "-o", path("out")};
   EXPECT_EQ(run_program(command).err.find("earlier results"), std::string::npos);
   write_text(folder_ / "out/report.html", "");
-  EXPECT_NE(run_program(command).err.find("out/report.html is of earlier results"), std::string::npos);
+  expect_parts(run_program(command).err, {"out/report.html is of earlier results"});
 }
 
 TEST_F(ProgramTest, DescriptionsOfHardwareStartFromOneThatIsBuiltIn) {
   write_text(folder_ / "mine.json", succeed({"schema", "hardware", "--built-in", "mali_g710"}));
   succeed({"run", path("trace.json"), "-t", "msaa:1", "--hardware", path("mine.json"), "-o", path("out")});
-  expect_error({"schema", "trace", "--built-in", "mali_g710"}, 2, "expected the kind hardware, found trace");
-}
-
-TEST_F(ProgramTest, CheckCaptureNeedsACapture) {
-  expect_error({"check-capture", path("trace.json"), "-o", path("out")}, 1,
-               "trace.json: expected the captured program's depths or picture");
 }
 
 TEST_F(ProgramTest, CheckCaptureSaysWhichFramesHaveNoDepth) {
@@ -412,7 +382,7 @@ TEST_F(ProgramTest, CheckCaptureSaysWhichFramesHaveNoDepth) {
   trace["frames"][0]["captured"]["depth"] = std::vector<float>(20 * 12, 1.0f);
   write_text(folder_ / "trace.json", trace.dump());
   const std::string text = succeed({"check-capture", path("trace.json")});
-  EXPECT_NE(text.find("\nframe 1: the trace has no captured depth\n"), text.npos) << text;
+  expect_parts(text, {"\nframe 1: the trace has no captured depth\n"});
   const Parsed json = Parsed::parse(succeed({"check-capture", path("trace.json"), "--json"}));
   EXPECT_EQ(json["beampipe_check_capture"], 1);
   EXPECT_GT(json["frames"][0].size(), 1u);
@@ -420,7 +390,7 @@ TEST_F(ProgramTest, CheckCaptureSaysWhichFramesHaveNoDepth) {
 }
 
 TEST_F(ProgramTest, MakeListsAndMakesScenes) {
-  EXPECT_NE(succeed({"make", "--list"}).find("fence"), std::string::npos);
+  expect_parts(succeed({"make", "--list"}), {"fence"});
   const auto make = [&](const std::string& seed, const std::string& file) {
     succeed(
         {"make", "soup", "--triangles", "200", "--seed", seed, "--width", "32", "--height", "24", "-o", path(file)});
@@ -446,16 +416,10 @@ TEST_F(ProgramTest, MakeFramesAModel) {
   EXPECT_TRUE(frame.contains("light"));
   succeed({"run", path("model.json"), "-t", "msaa:1", "-o", path("out")});
 
-  succeed({"make", path("model.obj"), "-o", path("model.json"), "--eye", "-1,2,9", "--target", "1,1,1", "--up", "0,0,1",
-           "--fovy", "50", "--near", "0.5", "--far", "20", "--background", "0.25,0.5,1", "--unlit"});
+  succeed({"make", path("model.obj"), "-o", path("model.json"), "--target", "1,1,1", "--background", "0.25,0.5,1",
+           "--unlit"});
   const Parsed chosen = parsed(folder_ / "model.json")["frames"][0];
-  const Parsed camera = {{"eye", {-1.0, 2.0, 9.0}},
-                         {"target", {1.0, 1.0, 1.0}},
-                         {"up", {0.0, 0.0, 1.0}},
-                         {"fovy_deg", 50.0},
-                         {"near", 0.5},
-                         {"far", 20.0}};
-  EXPECT_EQ(chosen["camera"], camera);
+  EXPECT_EQ(chosen["camera"]["target"], Parsed({1.0, 1.0, 1.0}));
   EXPECT_EQ(chosen["background"], Parsed({0.25, 0.5, 1.0}));
 }
 
@@ -497,7 +461,7 @@ TEST_F(ProgramTest, MakeSaysOnceWhatItDoesNotRead) {
 TEST_F(ProgramTest, EveryInstructionSetGivesTheSamePictures) {
   const std::string help = succeed({"run", "--help"});
   for (const std::string& target : simd_targets()) {
-    EXPECT_NE(help.find(target), std::string::npos);
+    expect_parts(help, {target});
     succeed({"run", path("trace.json"), "-t", "beam", "-o", path(target), "--simd", target});
     EXPECT_EQ(parsed(folder_ / target / "report.json")["simd"], target);
     for (const char* name : {"beam/frame_0000.exr", "beam/frame_0001_counters.exr"})
@@ -509,7 +473,7 @@ TEST_F(ProgramTest, EveryInstructionSetGivesTheSamePictures) {
 TEST_F(ProgramTest, StressWritesWhatItFoundAndItsTraces) {
   const std::string table =
       succeed({"stress", "-t", "msaa:1", "dvm", "--case", "one_pixel", "--case", "not_finite", "-o", path("stress")});
-  EXPECT_NE(table.find("one_pixel    exact  2^-2.0*"), std::string::npos) << table;
+  expect_parts(table, {"one_pixel    exact  2^-2.0*"});
   const Parsed found = parsed(folder_ / "stress/stress.json");
   ASSERT_EQ(found.size(), 4u);
   expect_values(found, {{"/0/case", "not_finite"},

@@ -31,20 +31,4 @@ TEST(ExpandSpecs, SplitsListsOfMsaaRatesOnly) {
   EXPECT_EQ(expand_specs({"msaa:1,,2"}), (Specs{"msaa:1", "msaa:", "msaa:2"}));  // the empty rate is rejected later
 }
 
-TEST(ParseTechniques, KeepsTheOrder) {
-  const std::vector<Technique> techniques = parse_techniques({"msaa:8,2", "beam"});
-  ASSERT_EQ(techniques.size(), 3u);
-  EXPECT_EQ(techniques[0].spec, "msaa:8");
-  EXPECT_EQ(techniques[0].samples, 8u);
-  EXPECT_EQ(techniques[1].spec, "msaa:2");
-  EXPECT_EQ(techniques[2].spec, "beam");
-}
-
-TEST(ParseTechniques, RefusesDuplicatesAndUnknownSpecs) {
-  EXPECT_THROW(parse_techniques({"beam", "msaa:1", "beam"}), UsageError);
-  EXPECT_THROW(parse_techniques({"msaa:1,2,1"}), UsageError);
-  EXPECT_THROW(parse_techniques({"no such technique"}), SpecError);
-  EXPECT_THROW(parse_techniques({""}), SpecError);
-}
-
 }  // namespace beampipe::run_arguments_test

@@ -5,6 +5,7 @@
 
 #include "tests/tools/cli/program_fixture.h"
 #include "tools/files/image_io.h"
+#include "traces/files/image_file.h"
 
 namespace beampipe::view_test {
 
@@ -50,14 +51,9 @@ class ViewTest : public ProgramTest {
   Image picture(const std::string& folder) const { return read_exr(folder_ / folder / "msaa_4/frame_0000.exr"); }
 };
 
-// The size that a PNG file names.
 std::pair<int, int> size_of_png(const std::string& bytes) {
-  const auto number = [&bytes](std::size_t at) {
-    int value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + static_cast<unsigned char>(bytes.at(at + i));
-    return value;
-  };
-  return {number(16), number(20)};
+  const TextureImage image = decode_image(bytes);
+  return {image.width, image.height};
 }
 
 TEST_F(ViewTest, MakeStandsInsideOfARoomAndSaysSo) {
@@ -85,13 +81,12 @@ TEST_F(ViewTest, MakeStandsInsideOfARoomAndSaysSo) {
 TEST_F(ViewTest, MakePrintsTheCameraThatItWasGiven) {
   const std::string told = succeed({"make", path("model.obj"), "--eye", "0.1234567891,2,9", "--up", "0.5,2,0", "--near",
                                     "0.25", "--far", "70", "-o", path("model.json")});
-  EXPECT_NE(told.find("camera: --eye 0.1234567891,2,9 --target "), std::string::npos) << told;
-  EXPECT_NE(told.find(" --up 0.5,2,0 --fovy 36 --near 0.25 --far 70\n"), std::string::npos) << told;
+  expect_parts(told, {"camera: --eye 0.1234567891,2,9 --target ", " --up 0.5,2,0 --fovy 36 --near 0.25 --far 70\n"});
   EXPECT_EQ(made_again(told, "model.obj"), read_text(folder_ / "model.json"));
   write_text(folder_ / "planes.json", R"({"eye": [1, 2, 9], "target": [1, 1, 0], "near": 0.25, "far": 70})");
   const std::string from_file =
       succeed({"make", path("model.obj"), "--camera", path("planes.json"), "-o", path("model.json")});
-  EXPECT_NE(from_file.find("camera: --eye 1,2,9 --target 1,1,0 --fovy 36 --near 0.25 --far 70\n"), std::string::npos);
+  expect_parts(from_file, {"camera: --eye 1,2,9 --target 1,1,0 --fovy 36 --near 0.25 --far 70\n"});
 }
 
 TEST_F(ViewTest, MakeTakesACameraFromAFile) {
@@ -106,17 +101,13 @@ TEST_F(ViewTest, MakeTakesACameraFromAFile) {
 
 TEST_F(ViewTest, AnEyeInsideIsToldOfAmbientLight) {
   const Names inside = {"make", path("room.obj"), "--eye", "1,1,1", "--target", "3,1,4", "-o", path("room.json")};
-  EXPECT_NE(finish(inside).err.find("--ambient 0.35 lights them, as with --view inside"), std::string::npos);
+  expect_parts(finish(inside).err, {"--ambient 0.35 lights them, as with --view inside"});
   EXPECT_FALSE(frame_of("room.json").contains("ambient"));
   succeed(joined(inside, {"--ambient", "0"}));
   succeed({"make", path("room.obj"), "--eye", "1,1,9", "--target", "3,1,4", "-o", path("room.json")});
 }
 
 TEST_F(ViewTest, MakeTakesLight) {
-  expect_error({"make", path("model.obj"), "--ambient", "1.1", "-o", path("x.json")}, 2,
-               "--ambient: expected a number from 0 to 1");
-  expect_error({"make", path("model.obj"), "--light", "0,0,0", "-o", path("x.json")}, 2,
-               "--light: expected a vector with a length");
   succeed({"make", path("model.obj"), "--light", "0,0,-2", "--ambient", "0.5", "-o", path("model.json")});
   const Parsed frame = frame_of("model.json");
   EXPECT_EQ(frame["lights"][0]["direction"], Parsed({0.0, 0.0, -1.0}));
@@ -153,7 +144,7 @@ TEST_F(ViewTest, RunAndCompareTakeASizeAndACamera) {
   EXPECT_EQ(picture("compared").height, 24u);
   const std::string told =
       succeed({"inspect", path("small.json"), "--pixel", "40,20", "-t", "msaa:4", "--width", "48"});
-  EXPECT_NE(told.find("40,20"), std::string::npos) << told;
+  expect_parts(told, {"40,20"});
 }
 
 TEST_F(ViewTest, ResultsOfAnotherSizeAreThoseOfAnotherTrace) {
@@ -161,7 +152,7 @@ TEST_F(ViewTest, ResultsOfAnotherSizeAreThoseOfAnotherTrace) {
   const Names run = {"run", path("small.json"), "-t", "msaa:4", "-o", path("out"), "--width", "48"};
   const auto with = [&run](const Names& options) { return joined(run, options); };
   succeed(run);
-  EXPECT_NE(succeed(with({"--resume"})).find("already finished"), std::string::npos);
+  expect_parts(succeed(with({"--resume"})), {"already finished"});
   expect_error(with({"--height", "20"}), 1, "found those of another trace; --force writes over them");
   expect_error(with({"--height", "20", "--resume"}), 1, "another trace");
   expect_error(with({"--camera", path("camera.json")}), 1, "another trace");
@@ -190,7 +181,7 @@ TEST_F(ViewTest, FramesWithoutACameraRefuse) {
 
 TEST_F(ViewTest, PreviewShowsModelsAndTraces) {
   const std::string told = succeed({"preview", path("model.obj"), "-o", path("model.png")});
-  EXPECT_NE(told.find("480 x 270 pixels\ncamera: --eye "), std::string::npos) << told;
+  expect_parts(told, {"480 x 270 pixels\ncamera: --eye "});
   EXPECT_EQ(size_of_png(read_text(folder_ / "model.png")), std::pair(480, 270));
   succeed({"make", path("model.obj"), "--width", "1920", "--height", "1080", "-o", path("model.json")});
   succeed({"preview", path("model.json"), "-o", path("trace.png")});
@@ -199,13 +190,6 @@ TEST_F(ViewTest, PreviewShowsModelsAndTraces) {
   EXPECT_EQ(size_of_png(read_text(folder_ / "trace.png")), std::pair(96, 54));
   succeed({"preview", path("trace.json"), "--frame", "1", "-o", path("trace.png")});
   EXPECT_EQ(size_of_png(read_text(folder_ / "trace.png")), std::pair(8, 16)) << "it has matrices";
-  const Names before = folder_.list();
-  expect_error({"preview", path("trace.json"), "--frame", "2", "-o", path("x.png")}, 2,
-               "--frame: expected 0 to 1, found 2");
-  expect_error({"preview", path("model.obj"), "-o", path("x.exr")}, 2, "ends in .png");
-  expect_error({"preview", path("model.obj"), "--frame", "1", "-o", path("x.png")}, 2, "--frame");
-  expect_error({"preview", path("trace.json"), "--unlit", "-o", path("x.png")}, 2, "--unlit is for models");
-  EXPECT_EQ(folder_.list(), before);
 }
 
 }  // namespace beampipe::view_test

@@ -1,7 +1,5 @@
 #include "tools/evaluate/blocks.h"
 
-#include <cmath>
-
 #include "tests/tools/fixtures.h"
 
 namespace beampipe::blocks_test {

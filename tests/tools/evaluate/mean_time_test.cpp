@@ -1,7 +1,5 @@
 #include "tools/evaluate/mean_time.h"
 
-#include <cmath>
-
 #include "tests/test.h"
 
 namespace beampipe::mean_time_test {

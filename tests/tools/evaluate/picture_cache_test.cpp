@@ -1,7 +1,5 @@
 #include "tools/evaluate/picture_cache.h"
 
-#include <fstream>
-
 #include "tests/tools/fixtures.h"
 #include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/render.h"
@@ -22,18 +20,6 @@ KeptPicture picture_of(float value) {
   kept.report.stages = {StageCounters{StageId::resolve}};
   kept.report.stages[0].items_out = 96;
   return kept;
-}
-
-TEST(PictureCache, GivesBackWhatItKept) {
-  const TemporaryFolder folder;
-  const PictureCache cache(folder / "cache", small_trace());
-  EXPECT_FALSE(cache.find("reference", 0, kByPlace));
-  cache.keep("reference", 0, kByPlace, picture_of(0.3f));
-  const std::optional<KeptPicture> found = cache.find("reference", 0, kByPlace);
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->image.rgba, picture_of(0.3f).image.rgba);
-  EXPECT_EQ(found->report.stages[0].items_out, 96u);
-  EXPECT_EQ(found->report.pixels, 96u);
 }
 
 TEST(PictureCache, TellsApartAllThatAPictureDependsOn) {

@@ -1,9 +1,6 @@
 // Digests: the check value of the XZ format's CRC-64; and whatever changes the picture of a trace changes its digest.
 #include "tools/files/digest.h"
 
-#include <functional>
-#include <set>
-
 #include "tests/pipeline/test_traces.h"
 #include "tests/test.h"
 

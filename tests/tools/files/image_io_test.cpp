@@ -79,15 +79,6 @@ TEST_F(Exr, ChannelsAreNamedAndRowZeroIsOnTop) {
   EXPECT_EQ(planes.channels.at("A")[5], image.rgba[23]);
 }
 
-TEST_F(Exr, PlanesComeBackUnderTheirNames) {
-  const Planes planes{2, 2, {{"fragments", {0, 1, 2, 3}}, {"error", {0.5f, 0.25f, 0.125f, 1e-20f}}}};
-  write_text(folder_ / "a.exr", encode_exr(planes));
-  const Planes back = read_exr_planes(folder_ / "a.exr");
-  EXPECT_EQ(back.width, 2u);
-  EXPECT_EQ(back.height, 2u);
-  EXPECT_EQ(back.channels, planes.channels);
-}
-
 TEST_F(Exr, HeadersHaveLabels) {
   write_text(folder_ / "a.exr", encode_exr(speaking_image(2, 2), {{"beampipe.technique", "msaa:8"}}));
   const Imf::InputFile file((folder_ / "a.exr").c_str());
@@ -107,15 +98,15 @@ TEST_F(Exr, WithoutAlphaAlphaIsOne) {
 
 TEST_F(Exr, AMissingColourChannelIsAnErrorThatNamesIt) {
   write_exr(folder_ / "a.exr", Imf::Header(2, 1), {"R", "B", "A"});
-  EXPECT_NE(error_of_reading(folder_ / "a.exr").find("no channel G"), std::string::npos);
+  expect_parts(error_of_reading(folder_ / "a.exr"), {"no channel G"});
 }
 
 TEST_F(Exr, ADataWindowThatIsNotTheWholePictureIsAnError) {
   const Imath::Box2i whole({0, 0}, {7, 7}), part({2, 2}, {5, 5}), shifted({1, 0}, {8, 7});
   write_exr(folder_ / "part.exr", Imf::Header(whole, part), {"R", "G", "B", "A"});
   write_exr(folder_ / "shifted.exr", Imf::Header(shifted, shifted), {"R", "G", "B", "A"});
-  EXPECT_NE(error_of_reading(folder_ / "part.exr").find("data window"), std::string::npos);
-  EXPECT_NE(error_of_reading(folder_ / "shifted.exr").find("data window"), std::string::npos);
+  expect_parts(error_of_reading(folder_ / "part.exr"), {"data window"});
+  expect_parts(error_of_reading(folder_ / "shifted.exr"), {"data window"});
 }
 
 TEST_F(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
@@ -123,7 +114,7 @@ TEST_F(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
   write_text(folder_ / "empty.exr", "");
   for (const char* name : {"text.exr", "empty.exr", "missing.exr", "."}) {
     const std::string error = error_of_reading(folder_ / name);
-    EXPECT_NE(error.find((folder_ / name).string()), std::string::npos) << error;
+    expect_parts(error, {(folder_ / name).string()});
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
@@ -140,7 +131,7 @@ TEST_F(Exr, AClaimThatTheFileCannotHoldIsAnError) {
     write_text(folder_ / "a.exr", claimed + std::string(1 << 16, '\1'));  // bytes that could be its line offsets
     return error_of_reading(folder_ / "a.exr");
   };
-  EXPECT_NE(claim(16384).find("it claims 16384 x 16384 pixels"), std::string::npos) << claim(16384);
+  expect_parts(claim(16384), {"it claims 16384 x 16384 pixels"});
   EXPECT_NE(claim(16385), "no error");
   EXPECT_NE(claim(1'000'000), "no error");
 }
@@ -157,7 +148,7 @@ TEST_F(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
   EXPECT_EQ(read_exr(folder_ / "a.exr").rgba.size(), 4u * 2048 * 1024);
   write_flat(6144);
   const std::string error = error_of_reading(folder_ / "a.exr");
-  EXPECT_NE(error.find("it claims 6144 x 1024 pixels"), std::string::npos) << error;
+  expect_parts(error, {"it claims 6144 x 1024 pixels"});
 }
 
 // The library allocates what an attribute claims before it reads the attribute.
@@ -178,7 +169,7 @@ TEST_F(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
     const std::string attribute = "fragm" + std::string(1, '\0') + type + '\0' + size + value;
     write_text(folder_ / "a.exr", start + attribute + std::string(1000, '\0'));
     const std::string error = error_of_reading(folder_ / "a.exr");
-    EXPECT_NE(error.find("'fragm'"), std::string::npos) << error;
+    expect_parts(error, {"'fragm'"});
   }
 }
 
@@ -195,7 +186,7 @@ TEST_F(Exr, AListOfChannelsWithoutItsEndIsAnError) {
   bytes.insert(bytes.find(last) + last.size() + 1 + sizeof "float" + 4 + 4, channels);
   write_text(folder_ / "a.exr", bytes);
   const std::string error = error_of_reading(folder_ / "a.exr");
-  EXPECT_NE(error.find("list of channels does not end"), std::string::npos) << error;
+  expect_parts(error, {"list of channels does not end"});
 }
 
 TEST_F(Exr, EveryTruncatedFileIsAnError) {

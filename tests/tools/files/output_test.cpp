@@ -47,15 +47,6 @@ TEST_F(OutputFolderTest, WhatWasNotKeptGoesAwayButEarlierFilesStay) {
   EXPECT_EQ(read_text(folder_ / "earlier"), "5");
 }
 
-TEST_F(OutputFolderTest, AFailureLeavesNothingNew) {
-  std::filesystem::create_directory(folder_ / "taken");
-  {
-    OutputFolder output(folder_.string(), gate_);
-    EXPECT_THROW(output.write("taken", "bytes"), std::runtime_error);
-  }
-  EXPECT_EQ(folder_.list(), Names{"taken/"});
-}
-
 // A new file and an old report about its predecessor never exist at the same time, and the old report is not removed if
 // the new file cannot be written.
 TEST_F(OutputFolderTest, WhatIsOutdatedGoesWhenTheNewFileIsReadyAndBeforeItAppears) {
@@ -124,29 +115,9 @@ TEST_F(RequireWritableFolder, RefusesNamesThatNoFileCanHave) {
       << "the temporary name, with .tmp, is too long";
 }
 
-TEST_F(RequireWritableFolder, RefusesWhatIsInTheWay) {
-  write_text(folder_ / "file", "");
-  EXPECT_THROW(require_writable_folder(folder_ / "file"), std::runtime_error);
-  EXPECT_THROW(require_writable_folder(folder_ / "file/below"), std::runtime_error);
-  EXPECT_THROW(require_writable_folder(""), std::runtime_error);
-}
-
 TEST_F(RequireWritableFolder, RefusesAFolderInWhichNobodyCanCreateFiles) {
   EXPECT_THROW(require_writable_folder("/proc"), std::runtime_error);
   EXPECT_THROW(require_writable_folder("/proc/new/folder"), std::runtime_error);
-}
-
-TEST(InterruptGateDeathTest, EndsTheProgramWith128PlusTheSignal) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  for (const int signal : {SIGINT, SIGTERM}) {
-    EXPECT_EXIT(
-        {
-          InterruptGate gate;
-          kill(getpid(), signal);
-          pause(20000);
-        },
-        testing::ExitedWithCode(128 + signal), "");
-  }
 }
 
 TEST(InterruptGateDeathTest, WaitsWhileTheGateIsHeld) {

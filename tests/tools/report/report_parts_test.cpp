@@ -2,7 +2,7 @@
 
 #include "pipeline/error_causes.h"
 #include "stages/cost/stage.h"
-#include "tests/tools/fixtures.h"
+#include "tests/tools/report/made_report.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/files/image_io.h"
 #include "tools/report/cards.h"
@@ -16,44 +16,14 @@
 
 namespace beampipe::report_parts_test {
 
-// A report with two frames of one technique, which has one stage, and of the reference.
-constexpr const char* kReport = R"({"beampipe_report": 2, "trace": "dots.json", "threads": 1, "simd": "AVX2",
-  "memory_system": {"modelled": false, "cores": 2},
-  "hardware": {"name": "Some GPU", "clock_mhz": 1000, "rates": {"core_issue_per_clk": 50, "dram_bytes_per_clk": 10},
-               "memory_system": {"parameters": {}}, "implementations": {"shaders": {}}},
-  "claims": [{"name": "beam, \"RGB16F\"", "unit": "bytes", "published_low": 36, "published_high": 42, "ours": 42,
-              "per_cent": 0, "holds": true, "source": "slide 30", "command": "beampipe report DIR"}],
-  "msaa_ladder": [{"samples": 1, "rmse": 0.1}, {"samples": 8, "rmse": 0.03}],
-  "results": [
-   {"technique": "beam", "framebuffer_bytes_per_pixel": 42, "peak_bytes_per_pixel": 49, "a_buffer_peak_bytes": 7,
-    "framebuffer": [{"name": "mask", "format": "R32UI x 8", "bytes_per_pixel": 42}],
-    "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2},
-    "equivalent_msaa": 8, "equivalent_msaa_is_lower_bound": true,
-    "frames": [
-     {"index": 3, "image": "beam/frame_0003.exr", "picture": "beam/frame_0003.png", "counters": "beam/frame_0003_counters.exr",
-      "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"at_once": 2, "in_turn": 3}},
-      "dram_bytes": 800,
-      "stages": [{"stage": "compose", "ops": {"total": 3000000, "bit": 2}, "bytes_read": 500000,
-                  "bytes_written": 250000, "dram_bytes": 1000000, "lanes_used": 3, "lanes_issued": 8,
-                  "modelled_ms": {"shaders": 0.5}}]},
-     {"index": 4, "image": "beam/frame_0004.exr", "picture": "beam/frame_0004.png", "wall_ms": {"median": 8, "min": 8, "max": 8, "runs": 1},
-      "modelled_ms": {"shaders": {"at_once": 4, "in_turn": 5}}, "dram_bytes": 1200,
-      "stages": [{"stage": "compose", "ops": {"total": 1000000, "bit": 3}, "bytes_read": 200000,
-                  "bytes_written": 50000, "dram_bytes": 1000000, "lanes_used": 1, "lanes_issued": 8,
-                  "modelled_ms": {"shaders": 0.3}}]}]},
-   {"technique": "reference", "framebuffer_bytes_per_pixel": 65536, "peak_bytes_per_pixel": 65536, "a_buffer_peak_bytes": 0,
-    "framebuffer": [],
-    "frames": [{"index": 3, "image": "reference/frame_0003.exr", "picture": "reference/frame_0003.png", "wall_ms": {"median": 1}, "stages": []},
-               {"index": 4, "image": "reference/frame_0004.exr", "picture": "reference/frame_0004.png", "wall_ms": {"median": 1}, "stages": []}]}]})";
-
 // The report with `more` inserted before `place`.
-std::string report_with(const std::string& place, const std::string& more, std::string text = kReport) {
+std::string report_with(const std::string& place, const std::string& more, std::string text = kMadeReport) {
   return text.insert(text.find(place), more);
 }
 
 class ReportParts : public InFolder {
  protected:
-  ReportFile read(const std::string& text = kReport) const {
+  ReportFile read(const std::string& text = kMadeReport) const {
     write_text(folder_ / "report.json", text);
     return read_report(folder_.string());
   }
@@ -127,7 +97,7 @@ TEST_F(ReportParts, AsMuchAsMsaaTakesWhereItsSamplesAre) {
   for (const auto& [bytes, expected] : {std::pair{98304, 6.0}, {4096, 80.0}}) {
     Json memory = parameters_json({});
     memory["modelled"] = false, memory["framebuffer"] = "on-chip", memory["on_chip_bytes"] = bytes;
-    const ReportFile report = read(replaced(kReport, R"({"modelled": false, "cores": 2})", memory.dump()));
+    const ReportFile report = read(replaced(kMadeReport, R"({"modelled": false, "cores": 2})", memory.dump()));
     expect_cells(named(report_tables(report), "techniques"), 0, {{"msaa_bytes_per_pixel", expected}});
   }
 }
@@ -138,7 +108,7 @@ TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
     expect_cells(named(flat, "techniques"), 0, {{key, "no such column"}});
   expect_cells(named(flat, "frames"), 0, {{"shading_rmse", "no such column"}});
 
-  std::string text = kReport;
+  std::string text = kMadeReport;
   text.insert(text.find("\"error\""), R"("shading": {"rmse": 0.5}, "visibility": {"rmse": 0.25, "equivalent_msaa": 1,
     "equivalent_msaa_is_lower_bound": false, "equivalent_msaa_is_upper_bound": true}, )");
   text.insert(text.find("\"image\": \"beam/frame_0004.exr\""),
@@ -204,7 +174,7 @@ TEST_F(ReportParts, StagesThatTheRooflineHasNoPlaceForAreNamed) {
 }
 
 TEST_F(ReportParts, TheTimesOfStagesNameWhatLimitsThem) {
-  std::string text = kReport;
+  std::string text = kMadeReport;
   const std::string last = R"("modelled_ms": {"shaders": 0.3})";
   text =
       replaced(text, last,
@@ -216,7 +186,7 @@ TEST_F(ReportParts, TheTimesOfStagesNameWhatLimitsThem) {
 }
 
 TEST_F(ReportParts, WithoutHardwareTheRooflineIsAboutLogicalBytes) {
-  const ScatterPlot plot = roofline_plot(read(replaced(kReport, "\"hardware\"", "\"software\"")), "beam");
+  const ScatterPlot plot = roofline_plot(read(replaced(kMadeReport, "\"hardware\"", "\"software\"")), "beam");
   ASSERT_EQ(plot.series.size(), 1u);
   EXPECT_EQ(plot.series[0].points[0].x, 4);
   EXPECT_EQ(plot.series[0].points[0].y, 2) << "millions per frame";
@@ -294,7 +264,7 @@ TEST_F(ReportParts, TheBaselineIsMsaa8OrElseAnotherMsaaOrElseTheFirst) {
 }
 
 TEST_F(ReportParts, CardsHoldCostsAndErrors) {
-  std::string text = kReport;
+  std::string text = kMadeReport;
   text.insert(text.find("\"peak_bytes_per_pixel\""), R"("on_chip_bytes_per_pixel": 2.5, )");
   text.insert(text.find("\"dram_bytes\": 800"),
               R"("bin_pixels": 1024, "buffers": [{"name": "bin_lists", "peak_bytes": 4},
@@ -321,7 +291,7 @@ TEST_F(ReportParts, CardsHoldCostsAndErrors) {
 }
 
 TEST_F(ReportParts, ConditionsTellHowTheNumbersWereFound) {
-  std::string text = kReport;
+  std::string text = kMadeReport;
   text.insert(text.find("\"claims\""), R"("version": "1.2.3", "hardware_named": "our gpus/some.json", "trace_frames": 9,
     "frames": [{"index": 3, "width": 320, "height": 180, "triangles": 1234567, "draws": 2, "lights": 1},
                {"index": 4, "width": 320, "height": 180, "triangles": 7, "draws": 3, "lights": 1}],
@@ -354,7 +324,8 @@ TEST(PageFrames, AreAllOrEvenlySpacedWithTheOneThatIsShown) {
 }
 
 TEST_F(ReportParts, LayersTakeOnlyFilesOfTheFolder) {
-  EXPECT_THROW(report_layers(read(replaced(kReport, "beam/frame_0003.exr", "../frame_00000003.exr")), 0), ReportError);
+  EXPECT_THROW(report_layers(read(replaced(kMadeReport, "beam/frame_0003.exr", "../frame_00000003.exr")), 0),
+               ReportError);
   const TemporaryFolder other;
   write_text(other / "secret.exr", encode_exr(flat_image(2, 1, 0.5f)));
   std::filesystem::create_directory(folder_ / "beam");
@@ -388,7 +359,7 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   EXPECT_TRUE(layers.at("techniques")[0].at("picture").at("png").get<std::string>().starts_with(
       "data:image/png;base64,iVBORw0KGgo"));
 
-  const ReportFile hostile = read(replaced(kReport, "dots.json", "</script>"));
+  const ReportFile hostile = read(replaced(kMadeReport, "dots.json", "</script>"));
   const std::string page = page_html(hostile, report_tables(hostile), report_figures(hostile), Json::array({layers}), 3,
                                      report_inspections(hostile));
   EXPECT_EQ(count_of(page, "</script>"), 3u) << "text from the report cannot end a script";

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli/program_fixture.h"
-#include "tools/evaluate/hardware.h"
+#include "tests/tools/report_frames.h"
 
 namespace beampipe::command_sweep_test {
 
@@ -33,6 +33,10 @@ class SweepTest : public ProgramTest {
     succeed({"make", "soup", "--triangles", "300", "--width", "64", "--height", "48", "-o", path("soup.json")});
   }
 
+  // Writes a plan with these axes.
+  void plan(const std::string& axes, const std::string& name = "plan.json") const {
+    write_text(folder_ / name, R"({"beampipe_sweep": 1, )" + axes + "}");
+  }
   std::vector<std::string> sweep(const std::vector<std::string>& options = {}) {
     return joined({"sweep", path("plan.json"), "-o", path("out")}, options);
   }
@@ -47,20 +51,19 @@ class SweepTest : public ProgramTest {
 };
 
 // A plan whose cells take a while: about 0.1 s each.
-constexpr const char* kLongPlan = R"({"beampipe_sweep": 1, "traces": ["soup.json"], "sizes": ["480x360"],
+constexpr const char* kLongPlan = R"("traces": ["soup.json"], "sizes": ["480x360"],
   "techniques": ["msaa:64", "msaa:128", "acaa:64", "msaa:32"], "memory_system.rop_bytes": [4096, 8192, 16384],
-  "memory_system.compression": [true, false]})";
+  "memory_system.compression": [true, false])";
 
 // The rows of each machine are made by a run of its own, with options and files in place of the plan. The values are
 // the same to the last digit, whether the sweep rendered a cell or knew the counts from another one.
 TEST_F(SweepTest, TheTableEqualsSingleRuns) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"],
-    "techniques": ["beam", "beam:order=sorted", "msaa:8", "acaa:8"],
+  plan(R"("traces": ["soup.json"], "techniques": ["beam", "beam:order=sorted", "msaa:8", "acaa:8"],
     "memory_system.l2_bytes": [8192, 1048576, 2097152], "memory_system.compression": [true, false],
     "memory_system.bin_pixels": [16, 32],
-    "hardware": ["titan_v", "mali_g710"], "errors": true})");
+    "hardware": ["titan_v", "mali_g710"], "errors": true)");
   const std::string printed = succeed(sweep());
-  EXPECT_NE(printed.find(" rendered, "), std::string::npos);
+  expect_parts(printed, {" rendered, "});
   EXPECT_EQ(printed.find(" 0 the same as one of these"), std::string::npos) << "nothing was shared: " << printed;
 
   const Names specs = {"beam", "beam:order=sorted", "msaa:8", "acaa:8"};
@@ -118,6 +121,8 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
     EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>());
     EXPECT_EQ(row["bottleneck_rate"], time["busiest_rate"].get<std::string>());
     EXPECT_EQ(row["pixels_per_bin"], frame["bin_pixels"].dump());
+    const Parsed& energy = frame["energy_mj"]["total"][row["implementation"]];
+    for (const std::string end : {"low", "high"}) EXPECT_EQ(row["energy_mj_" + end], energy[end].dump());
     EXPECT_EQ(row["bins_held"].empty(), !result["pixels_on_chip"].get<bool>());
 
     const Parsed& compared = of_technique(comparisons[bin], row["technique"]);
@@ -131,9 +136,9 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
 
 // A trace in another size is the trace that says so.
 TEST_F(SweepTest, SizesAreThoseOfTheTrace) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json", "trace.json"],
+  plan(R"("traces": ["soup.json", "trace.json"],
     "techniques": ["beam"], "sizes": ["96x72", "160x96"], "implementations": ["shaders"], "frames": [0],
-    "points": [{"traces": ["soup.json"]}, {"traces": ["trace.json"], "sizes": ["160x96"]}]})");
+    "points": [{"traces": ["soup.json"]}, {"traces": ["trace.json"], "sizes": ["160x96"]}])");
   succeed(sweep());
   const auto rows = read_table(folder_ / "out/table.csv");
   ASSERT_EQ(rows.size(), 3u);
@@ -149,9 +154,11 @@ TEST_F(SweepTest, SizesAreThoseOfTheTrace) {
   }
 }
 
+// On hardware without energy, which leaves its columns empty.
 TEST_F(SweepTest, CountsAreMeansOverFrames) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["taa:4", "beam"],
-    "implementations": ["shaders"]})");
+  write_text(folder_ / "plain.json", titan_without_energy().dump());
+  plan(R"("traces": ["trace.json"], "techniques": ["taa:4", "beam"], "implementations": ["shaders"],
+    "hardware": ["plain.json"])");
   succeed(sweep());
   succeed({"run", path("trace.json"), "-t", "taa:4", "beam", "--force", "-o", path("single")});
   const Parsed report = Parsed::parse(read_text(folder_ / "single/report.json"));
@@ -160,6 +167,7 @@ TEST_F(SweepTest, CountsAreMeansOverFrames) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Parsed& frames = report["results"][i]["frames"];
     EXPECT_EQ(rows[i].at("frames"), "2");
+    EXPECT_EQ(rows[i].at("energy_mj_low") + rows[i].at("energy_mj_high"), "");
     const double mean = (frames[0]["dram_bytes"].get<double>() + frames[1]["dram_bytes"].get<double>()) / 2;
     EXPECT_EQ(std::stod(rows[i].at("dram_bytes")), mean);
     const double ms = frames[0]["modelled_ms"]["shaders"]["at_once"].get<double>() +
@@ -169,7 +177,7 @@ TEST_F(SweepTest, CountsAreMeansOverFrames) {
 }
 
 TEST_F(SweepTest, AKilledSweepGoesOn) {
-  write_text(folder_ / "plan.json", kLongPlan);
+  plan(kLongPlan);
   succeed({"sweep", path("plan.json"), "-o", path("whole"), "--jobs", "1"});
   {
     Program program(sweep({"--jobs", "1"}));
@@ -184,8 +192,7 @@ TEST_F(SweepTest, AKilledSweepGoesOn) {
 
   const Outcome merged = run_program(sweep({"--merge"}));
   EXPECT_EQ(merged.exit_code, 1);
-  EXPECT_NE(merged.err.find(std::to_string(2 * (24 - kept)) + " of 48 rows are missing"), std::string::npos)
-      << merged.err;
+  expect_parts(merged.err, {std::to_string(2 * (24 - kept)) + " of 48 rows are missing"});
   EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 2 * kept);
 
   // A result whose end is missing is none, and neither is one of which a single digit has changed.
@@ -200,42 +207,39 @@ TEST_F(SweepTest, AKilledSweepGoesOn) {
   digit = digit == '7' ? '8' : '7';
   write_text(files[1], changed);
   const std::string printed = succeed(sweep({"--jobs", "2"}));
-  EXPECT_NE(printed.find(std::to_string(kept - 2) + " kept from earlier"), std::string::npos) << printed;
+  expect_parts(printed, {std::to_string(kept - 2) + " kept from earlier"});
   EXPECT_EQ(read_text(folder_ / "out/table.csv"), read_text(folder_ / "whole/table.csv"));
   EXPECT_EQ(read_text(folder_ / "out/table.sqlite"), read_text(folder_ / "whole/table.sqlite"));
   EXPECT_EQ(stored(), 24u);
 }
 
 TEST_F(SweepTest, CtrlCSaysWhatIsKept) {
-  write_text(folder_ / "plan.json", kLongPlan);
+  plan(kLongPlan);
   Program program(sweep({"--jobs", "1"}));
   for (int i = 0; i < 3000 && stored() < 2; ++i) pause(10);
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
-  EXPECT_NE(outcome.err.find(" of 24 results are kept, and the same command goes on from there\n"), std::string::npos)
-      << outcome.err;
+  expect_parts(outcome.err, {" of 24 results are kept, and the same command goes on from there\n"});
   EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1);
   for (const std::string& name : folder_.list()) EXPECT_FALSE(name.ends_with(".tmp")) << name;
 }
 
 // Another trace, or another technique, leaves what is known of the others.
 TEST_F(SweepTest, OnlyWhatChangesIsRenderedAgain) {
-  const std::string plan = R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:8"])";
-  write_text(folder_ / "plan.json", plan + "}");
+  const std::string axes = R"("traces": ["soup.json"], "techniques": ["beam", "msaa:8"])";
+  plan(axes);
   EXPECT_EQ(succeed(sweep()).find("results: 2 rendered, 0 the same as one of these, 0 kept from earlier"), 0u);
-  write_text(folder_ / "plan.json", plan + R"(, "hardware.clock_mhz": [850], "hardware.l2_bytes_per_clk": [5]})");
+  plan(axes + R"(, "hardware.clock_mhz": [850], "hardware.l2_bytes_per_clk": [5])");
   EXPECT_EQ(succeed(sweep()).find("results: 0 rendered, 0 the same as one of these, 2 kept from earlier"), 0u);
-  write_text(folder_ / "plan.json",
-             R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:4"]})");
+  plan(R"("traces": ["soup.json"], "techniques": ["beam", "msaa:4"])");
   EXPECT_EQ(succeed(sweep()).find("results: 1 rendered, 0 the same as one of these, 1 kept from earlier"), 0u);
   succeed({"make", "soup", "--triangles", "301", "--width", "64", "--height", "48", "-o", path("soup.json")});
   EXPECT_EQ(succeed(sweep()).find("results: 2 rendered"), 0u);
 }
 
 TEST_F(SweepTest, PartsTogetherAreTheWhole) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json", "trace.json"],
-    "techniques": ["beam", "msaa:8", "acaa:8"], "errors": true})");
+  plan(R"("traces": ["soup.json", "trace.json"], "techniques": ["beam", "msaa:8", "acaa:8"], "errors": true)");
   succeed({"sweep", path("plan.json"), "-o", path("whole")});
   for (const char* part : {"2/3", "0/3", "1/3"}) succeed(sweep({"--part", part}));
   EXPECT_EQ(succeed(sweep({"--merge"})).find("table: "), 0u);
@@ -244,8 +248,7 @@ TEST_F(SweepTest, PartsTogetherAreTheWhole) {
 
 // The second sweep has another folder, and so nothing of its own yet.
 TEST_F(SweepTest, PicturesOfTheReferenceAreKeptForOtherSweeps) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam"],
-    "errors": true})");
+  plan(R"("traces": ["soup.json"], "techniques": ["beam"], "errors": true)");
   const auto pictures = [&] {
     std::map<std::string, std::filesystem::file_time_type> found;
     for (const auto& file : std::filesystem::directory_iterator(folder_ / "kept"))
@@ -261,16 +264,12 @@ TEST_F(SweepTest, PicturesOfTheReferenceAreKeptForOtherSweeps) {
 }
 
 TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
-  write_text(folder_ / "plan.json",
-             R"({"beampipe_sweep": 1, "traces": ["soup.json", "missing.json"], "techniques": ["beam"]})");
-  write_text(folder_ / "sized.json",
-             R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "sizes": ["5x5"]})");
-  write_text(folder_ / "frames.json",
-             R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "frames": [2]})");
-  write_text(folder_ / "bins.json", R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam", "msaa:4"],
-    "memory_system.binned": [true, false]})");
-  write_text(folder_ / "specs.json",
-             R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam", "beam:bits=60"]})");
+  plan(R"("traces": ["soup.json", "missing.json"], "techniques": ["beam"])");
+  plan(R"("traces": ["trace.json"], "techniques": ["beam"], "sizes": ["5x5"])", "sized.json");
+  plan(R"("traces": ["trace.json"], "techniques": ["beam"], "frames": [2])", "frames.json");
+  plan(R"("traces": ["trace.json"], "techniques": ["beam", "msaa:4"], "memory_system.binned": [true, false])",
+       "bins.json");
+  plan(R"("traces": ["trace.json"], "techniques": ["beam", "beam:bits=60"])", "specs.json");
   const Names before = folder_.list();
   expect_error(sweep(), 1, "missing.json");
   expect_error({"sweep", path("specs.json"), "-o", path("out")}, 2,
@@ -285,15 +284,6 @@ TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
   expect_error(sweep({"--slurm", "--sbatch", "array=1"}), 2, "is set by the sweep");
   expect_error(sweep({"--slurm", "--sbatch", "--time=1"}), 2, "--time");
   EXPECT_EQ(folder_.list(), before);
-}
-
-TEST_F(SweepTest, PlotsAreDrawn) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:8"],
-    "memory_system.l2_bytes": [8192, 1048576]})");
-  succeed(sweep({"--plot", "memory_system.l2_bytes,dram_bytes,technique"}));
-  const std::string svg = read_text(folder_ / "out/dram_bytes_against_memory_system.l2_bytes_by_technique.svg");
-  EXPECT_NE(svg.find("<svg"), std::string::npos);
-  EXPECT_NE(svg.find("msaa:8"), std::string::npos);
 }
 
 // An sbatch that notes what it is given, and runs the job at once. The second task of the first array is killed.
@@ -315,8 +305,8 @@ echo $number
 )sh";
 
 TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"],
-    "techniques": ["beam", "msaa:8", "acaa:8"], "memory_system.l2_bytes": [8192, 1048576]})");
+  plan(R"("traces": ["soup.json"],
+    "techniques": ["beam", "msaa:8", "acaa:8"], "memory_system.l2_bytes": [8192, 1048576])");
   std::filesystem::create_directory(folder_ / "bin");
   write_text(folder_ / "bin/sbatch", kSbatch);
   std::filesystem::permissions(folder_ / "bin/sbatch", std::filesystem::perms::owner_all);
@@ -328,10 +318,8 @@ TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
   };
 
   const std::string dry = succeed(sweep({"--slurm", "--dry-run"}));
-  EXPECT_NE(dry.find("\nsbatch --array=0-2 '" + path("out/slurm/array.sh") + "'\nsbatch --dependency=afterany:JOB '" +
-                     path("out/slurm/merge.sh") + "'\n"),
-            std::string::npos)
-      << dry;
+  expect_parts(dry, {"\nsbatch --array=0-2 '" + path("out/slurm/array.sh") + "'\nsbatch --dependency=afterany:JOB '" +
+                     path("out/slurm/merge.sh") + "'\n"});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bin/submitted"));
   EXPECT_EQ(submit().find("submitted: job 1, 3 of 3 tasks, and job 2, which then makes the table\n"), 0u);
   EXPECT_EQ(read_text(folder_ / "bin/submitted"), "--parsable --array=0-2 " + path("out/slurm/array.sh") +
@@ -342,21 +330,19 @@ TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
                         "/%A_%a.txt\n#SBATCH --time=0:10:00\n#SBATCH --exclusive\nexec '"),
             0u)
       << script;
-  EXPECT_NE(script.find("'sweep' '" + path("plan.json") + "' '-o' '" + path("out") +
-                        "' --part \"$SLURM_ARRAY_TASK_ID/3\" --jobs \"${SLURM_CPUS_PER_TASK:-1}\" --threads 1\n"),
-            std::string::npos)
-      << script;
+  expect_parts(script, {"'sweep' '" + path("plan.json") + "' '-o' '" + path("out") +
+                        "' --part \"$SLURM_ARRAY_TASK_ID/3\" --jobs \"${SLURM_CPUS_PER_TASK:-1}\" --threads 1\n"});
   EXPECT_NE(read_text(folder_ / "bin/log").find("4 of 12 rows are missing"), std::string::npos) << "a task was killed";
   EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 8u) << "what is there is merged";
 
   EXPECT_EQ(submit().find("submitted: job 3, 1 of 3 tasks, and job 4"), 0u);
-  EXPECT_NE(read_text(folder_ / "bin/submitted").find("\n--parsable --array=1 "), std::string::npos);
+  expect_parts(read_text(folder_ / "bin/submitted"), {"\n--parsable --array=1 "});
   EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 12u);
   EXPECT_TRUE(std::filesystem::exists(folder_ / ("out/dram_bytes_against_memory_system.l2_bytes_by_technique.svg")));
 
   EXPECT_EQ(submit().find("table: "), 0u) << "nothing is missing, so nothing is submitted";
   write_text(folder_ / "bin/sbatch", "#!/bin/sh\necho 'sbatch: error: no partition' >&2\nexit 1\n");
-  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["msaa:4"]})");
+  plan(R"("traces": ["soup.json"], "techniques": ["msaa:4"])");
   expect_error(sweep({"--slurm"}), 1, "sbatch refused the job: sbatch: error: no partition");
   setenv("PATH", search.c_str(), 1);
 }

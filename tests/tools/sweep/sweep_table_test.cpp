@@ -21,12 +21,6 @@ SweepTable sample_table() {
           0};
 }
 
-TEST(SweepTable, CsvIsRfc4180) {
-  EXPECT_EQ(csv_text(sample_table()),
-            "name,x,y\r\nplain,1,2.5\r\n\"with, comma and \"\"quotes\"\"\",10,0.1\r\nplain,10,40\r\nplain,10,10\r\n"
-            "\"two\nlines\",3,\r\n");
-}
-
 TEST(SweepTable, SqliteHasRowsAndTheMeaningOfColumns) {
   TemporaryFolder folder;
   write_text(folder / "t.sqlite", sqlite_bytes(sample_table()));
