@@ -65,8 +65,9 @@ TEST_F(ObjImportTest, TriangulatesPolygons) {
   const Mesh mesh = load(kSquare + "f 1 2 3 4\n");
   EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(mesh.positions.size(), 4u);
-  EXPECT_EQ(load("v 100 50 7\nv 104 50 7\nv 101 51 7\nv 100 54 7\nf 1 2 3 4\n").triangles,
-            (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(load("v 100 50 7\nv 104 50 7\nv 101 51 7\nv 100 54 7\nf 2 3 4 1\n").triangles,
+            (std::vector<glm::uvec3>{{2, 3, 0}, {2, 0, 1}}))
+      << "a fan from the first corner would fill the dent";
 }
 
 TEST_F(ObjImportTest, CountsNegativeIndicesFromTheLastVertexSoFar) {
