@@ -67,12 +67,6 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
       EXPECT_GT(frame["wall_ms"]["modelling_run"], 0);
       EXPECT_GT(frame["dram_bytes"], 0) << "an additional run models memory";
       ASSERT_FALSE(frame["stages"].empty());
-      EXPECT_EQ(frame["stages"][0]["stage"], "vertex_setup");
-      const Parsed& ops = frame["stages"][0]["ops"];
-      std::int64_t total = 0;
-      for (const char* kind : {"mul_add", "add", "bit", "fetch", "special", "convert"})
-        total += ops.at(kind).get<int>();
-      EXPECT_EQ(ops["total"], total);
     }
   }
 }
