@@ -59,14 +59,6 @@ TEST(CoverageExact, StaysWithinTheTriangleAndThePixel) {
   }
 }
 
-TEST(CoverageExact, HalfPixel) {
-  // The lower left half of the pixel: x <= y.
-  const Coverage<float> found = coverage_on_float(oriented({{{0, 0}, {256, 256}, {0, 256}}}));
-  EXPECT_EQ(found.alpha, 0.5f);
-  EXPECT_NEAR(found.centroid_u, 1.0 / 3, 1e-7);
-  EXPECT_NEAR(found.centroid_v, 2.0 / 3, 1e-7);
-}
-
 TEST(CoverageExact, FullPixelOfAGiantTriangle) {
   const Triangle giant{{{-kLimit, -kLimit}, {kLimit, -kLimit}, {-kLimit, kLimit}}, {-1.0f, -0.5f, -0.5f}};
   const Coverage<float> found = coverage_on_float(oriented(giant), -1, -1);

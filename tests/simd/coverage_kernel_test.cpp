@@ -10,8 +10,21 @@ void expect_same_bits(const Row& found, const Row& expected, std::size_t i) {
   ASSERT_EQ(std::bit_cast<Bits>(found), std::bit_cast<Bits>(expected)) << "triangle " << i;
 }
 
-// For both kernels, coverage and depth range.
-void expect_same_on_every_target(const std::vector<Triangle>& triangles) {
+// Both kernels, coverage and depth range, on random triangles and on those whose vertices lie on a lattice through the
+// pixel's corners and the middles of its sides: edges run along the pixel's border, and triangles touch it in a point
+// or along a side.
+TEST(CoverageKernel, EveryTargetEqualsTheFormula) {
+  Random random(1);
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 50'000; ++i) triangles.push_back(random_triangle(random));
+  constexpr std::int64_t kAt[] = {-256, 0, 128, 256, 512};
+  const auto point = [&](std::size_t i) { return Corner{kAt[i % 5], kAt[i / 5]}; };
+  for (std::size_t i = 0; i < 25; ++i)
+    for (std::size_t j = i + 1; j < 25; ++j)
+      for (std::size_t k = j + 1; k < 25; ++k) {
+        const Triangle t{{point(i), point(j), point(k)}, {-0.0f, -0.5f, -1.0f}};
+        if (t.area2() != 0) triangles.push_back(oriented(t));
+      }
   std::vector<TriangleInPixel> in;
   std::vector<DepthRangeInput<float>> ranges_in;
   for (const Triangle& t : triangles) in.push_back(kernel_input(t)), ranges_in.push_back(depth_range_input(t));
@@ -25,28 +38,6 @@ void expect_same_on_every_target(const std::vector<Triangle>& triangles) {
       expect_same_bits(ranges[i], depth_range_formula(ranges_in[i]), i);
     }
   });
-}
-
-TEST(CoverageKernel, EveryTargetEqualsTheFormulaOnRandomTriangles) {
-  Random random(1);
-  std::vector<Triangle> triangles;
-  for (int i = 0; i < 50'000; ++i) triangles.push_back(random_triangle(random));
-  expect_same_on_every_target(triangles);
-}
-
-// Vertices on a lattice through the pixel's corners and the middles of its sides, so that edges run along the pixel's
-// border and triangles touch it in a point or along a side.
-TEST(CoverageKernel, EveryTargetEqualsTheFormulaOnTouches) {
-  std::vector<Triangle> triangles;
-  constexpr std::int64_t kAt[] = {-256, 0, 128, 256, 512};
-  const auto point = [&](std::size_t i) { return Corner{kAt[i % 5], kAt[i / 5]}; };
-  for (std::size_t i = 0; i < 25; ++i)
-    for (std::size_t j = i + 1; j < 25; ++j)
-      for (std::size_t k = j + 1; k < 25; ++k) {
-        const Triangle t{{point(i), point(j), point(k)}, {-0.0f, -0.5f, -1.0f}};
-        if (t.area2() != 0) triangles.push_back(oriented(t));
-      }
-  expect_same_on_every_target(triangles);
 }
 
 // Batches that do not fill the last vector. Nothing may be written past their end.

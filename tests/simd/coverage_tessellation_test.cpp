@@ -7,27 +7,6 @@ namespace beampipe::coverage_tessellation_test {
 // Shared edges cancel exactly. What remains is the rounding of each triangle's own sum, 2^-24 for sums near 1.
 constexpr double kPerTriangle = 0x1p-24;
 
-struct Sum {
-  double alpha = 0;
-  int triangles = 0;  // with alpha > 0
-};
-
-Sum sum_of_alpha(const std::vector<Triangle>& triangles) {
-  Sum sum;
-  for (const Triangle& t : triangles) {
-    if (t.area2() == 0) continue;
-    const float alpha = coverage_on_float(oriented(t)).alpha;
-    sum.alpha += alpha;
-    sum.triangles += alpha > 0;
-  }
-  return sum;
-}
-
-void expect_closed(const std::vector<Triangle>& triangles) {
-  const Sum sum = sum_of_alpha(triangles);
-  ASSERT_NEAR(sum.alpha, 1.0, kPerTriangle * sum.triangles) << sum.triangles << " triangles";
-}
-
 TEST(CoverageTessellation, ReversedEdgeIntegratesToTheOppositeNumber) {
   Random random(7);
   for (int i = 0; i < 100'000; ++i) {
@@ -56,56 +35,15 @@ TEST(CoverageTessellation, FansCloseThePixel) {
     for (std::int64_t n = 0; n < spokes; ++n) rim.push_back({reach, along(n)});
     rim.push_back({reach, reach});
     rim.push_back({-reach, reach});
-    std::vector<Triangle> fan;
-    for (std::size_t i = 0; i < rim.size(); ++i) fan.push_back({{hub, rim[i], rim[(i + 1) % rim.size()]}});
-    expect_closed(fan);
-  }
-}
-
-TEST(CoverageTessellation, StripsCloseThePixel) {
-  Random random(9);
-  for (int round = 0; round < 400; ++round) {
-    std::vector<Corner> points = {{-900, -900}, {-900, 1200}};  // alternately above and below the pixel, left to right
-    for (int n = 0; n < 100; ++n) {
-      const bool above = n % 2 == 0;
-      const Corner& last = points[points.size() - 2];
-      points.push_back({last.x + random.integer(0, 60), above ? -900 : 1200});
+    double sum = 0;
+    int triangles = 0;
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+      const Triangle t{{hub, rim[i], rim[(i + 1) % rim.size()]}};
+      if (t.area2() == 0) continue;
+      const float alpha = coverage_on_float(oriented(t)).alpha;
+      sum += alpha, triangles += alpha > 0;
     }
-    points.push_back({kLimit, -900});
-    points.push_back({kLimit, 1200});
-    std::vector<Triangle> strip;
-    for (std::size_t i = 2; i < points.size(); ++i) strip.push_back({{points[i - 2], points[i - 1], points[i]}});
-    expect_closed(strip);
-  }
-}
-
-TEST(CoverageTessellation, GridsCloseThePixel) {
-  Random random(10);
-  for (int round = 0; round < 200; ++round) {
-    const std::int64_t cell = random.integer(8, 200), low = -cell * 3;
-    const auto cells = static_cast<std::size_t>((256 - 2 * low) / cell + 1);
-    std::vector<Corner> at((cells + 1) * (cells + 1));
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto jitter = [&] {
-        return random.integer(-cell / 3, cell / 3);
-      };  // small enough to keep one diagonal inside each cell
-      at[i] = {low + cell * static_cast<std::int64_t>(i % (cells + 1)) + jitter(),
-               low + cell * static_cast<std::int64_t>(i / (cells + 1)) + jitter()};
-    }
-    std::vector<Triangle> grid;
-    for (std::size_t row = 0; row < cells; ++row)
-      for (std::size_t column = 0; column < cells; ++column) {
-        const std::size_t i = row * (cells + 1) + column, below = i + cells + 1;
-        const Triangle upper{{at[i], at[i + 1], at[below]}}, lower{{at[i + 1], at[below + 1], at[below]}};
-        if (upper.area2() <= 0 || lower.area2() <= 0) {  // split along the other diagonal
-          grid.push_back({{at[i], at[i + 1], at[below + 1]}});
-          grid.push_back({{at[i], at[below + 1], at[below]}});
-        } else {
-          grid.push_back(upper);
-          grid.push_back(lower);
-        }
-      }
-    expect_closed(grid);
+    ASSERT_NEAR(sum, 1.0, kPerTriangle * triangles) << triangles << " triangles";
   }
 }
 

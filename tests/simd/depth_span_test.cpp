@@ -61,18 +61,4 @@ TEST(DepthSpan, EqualsIntegerArithmetic) {
   EXPECT_GT(ties, 100);
 }
 
-TEST(DepthSpan, NearerReplacesEqualDoesNot) {
-  // Depths -0.5, -0.375, -0.25, ... against -0.25 everywhere: two are nearer, the third is equal.
-  const DepthSpan span{-0.5, 0.125, 0.0, 0.0, 1.0};
-  on_every_target([&] {
-    std::vector<double> depth(9, -0.25);
-    std::vector<std::uint64_t> owner(9, 1);
-    EXPECT_EQ(depth_span(span, 9, 2, depth.data(), owner.data()), 2u);
-    EXPECT_EQ(owner, (std::vector<std::uint64_t>{2, 2, 1, 1, 1, 1, 1, 1, 1}));
-    EXPECT_EQ(depth[0], -0.5);
-    EXPECT_EQ(depth[1], -0.375);
-    EXPECT_EQ(depth[2], -0.25);
-  });
-}
-
 }  // namespace beampipe::depth_span_test

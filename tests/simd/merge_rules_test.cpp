@@ -53,17 +53,6 @@ void expect_invariants(const MergeFragment& fragment, const Aggregate& old, cons
   }
 }
 
-// A slab of thickness 0.4 around depth -0.5 reaches from -0.7 to -0.3; the depths that it was made of reach less far.
-TEST(MergeRules, TheDepthRangeLimitsTheEndsOfASlab) {
-  const Aggregate of = slab(-0.5f, 0.4f, -0.6f, -0.45f);
-  const SlabEnds<float> limited = slab_ends(of, -0.5f, {.extents = MergeRules::Extents::range});
-  EXPECT_EQ(limited.front, -0.6f);
-  EXPECT_EQ(limited.back, -0.45f);
-  const SlabEnds<float> free = slab_ends(of, -0.5f, {.extents = MergeRules::Extents::slab});
-  EXPECT_FLOAT_EQ(free.front, -0.7f);
-  EXPECT_FLOAT_EQ(free.back, -0.3f);
-}
-
 TEST(MergeRules, InvariantsOnChains) {
   Random random(43);
   for (const MergeRules& rules : every_merge_rule())
@@ -149,14 +138,6 @@ TEST(MergeRules, WithinTheSlabDeltaShares) {
   const Aggregate now = merged(flat_surface(1, kAllBits, -0.45f, 1, 0), slab(-0.5f, 0.2f, -0.6f, -0.4f));
   expect_shows(now, 1, 0.25, 0.75, 1e-6);
   EXPECT_GE(now.thickness, 0.2f);
-}
-
-// Two planes cross. The fragment is nearer left of the middle, the aggregate right of it, with 16 positions each.
-TEST(MergeRules, CrossingPlanesShareThePixel) {
-  Aggregate in = flat_surface(1, kAllBits, -0.5f, 1, 0);
-  in.plane.dzdu = 0.2f;
-  in.z_min = -0.6f, in.z_max = -0.4f;
-  expect_shows(merged(in, flat_surface(1, kAllBits, -0.5f, 0, 1), kByPosition), 1, 0.5, 0.5);
 }
 
 // A steep plane leaves the depth range that its triangle really has in the pixel. What lies behind that range is behind
@@ -527,18 +508,6 @@ TEST(MergeRules, ExtentsAreCutByTheRangeOrNot) {
   EXPECT_NEAR(merged(in, old, {.extents = MergeRules::Extents::slab}).color[0], 0.25f, 1e-6);
 }
 
-TEST(MergeRules, WhatIsHiddenLeavesTheSlabAlone) {
-  const Aggregate front = flat_surface(1, kAllBits, -0.9f, 0, 1), behind = flat_surface(1, kAllBits, -0.1f, 1, 0);
-  // From the mean depth, the slab reaches both surfaces.
-  EXPECT_NEAR(merged(behind, front, kLiteralSlab).thickness, 0.8f, 1e-6);
-  const MergeRules rules{.plane = MergeRules::Plane::area};
-  const Aggregate now = merged(behind, front, rules);
-  EXPECT_EQ(now.plane.z, front.plane.z);
-  EXPECT_EQ(now.thickness, 0.0f);
-  EXPECT_EQ(now.z_max, front.z_max);
-  EXPECT_NEAR(merged(front, behind, rules).thickness, 0.8f, 1e-6);  // the fragment in front is visible
-}
-
 // A thin fragment crosses a thin aggregate. The slab reaches the fragment at its visible positions and no farther.
 TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
   MergeRules rules = kByPosition;
@@ -584,22 +553,6 @@ TEST(MergeRules, PlanesAreWeightedByAreaOrByWhatShows) {
   EXPECT_FLOAT_EQ(merged(behind, front, kLiteralSlab).plane.z, -0.5f);
   EXPECT_FLOAT_EQ(merged(front, behind, {.plane = MergeRules::Plane::area}).plane.z, -0.5f);
   EXPECT_FLOAT_EQ(merged(front, behind).plane.z, -0.9f);
-}
-
-// A thin slab at -0.9 and a second surface at -0.1. The plane moves to -0.5 and must still reach the whole first slab.
-TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
-  const Aggregate old = slab(-0.9f, 0.1f, -0.95f, -0.85f), in = flat_surface(1, kAllBits, -0.1f, 1, 0);
-  EXPECT_NEAR(merged(in, old, kLiteralSlab).thickness, 0.8f, 1e-6);
-  MergeRules containing = kLiteralSlab;
-  containing.thickness = MergeRules::Thickness::containing;
-  EXPECT_NEAR(merged(in, old, containing).thickness, 0.1f + 2 * 0.4f, 1e-6);
-}
-
-// OVER by hand: 1/2, and 1/2 of the 1/4 behind it.
-TEST(MergeRules, PlainOver) {
-  const Aggregate now = over_formula<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u, 0u},
-                                                           flat_surface(0.5f, 1u, -0.9f, 0, 1));
-  expect_shows(now, 0.625, 0.125, 0.5);
 }
 
 }  // namespace beampipe::merge_rules_test

@@ -63,22 +63,6 @@ TEST(PlaneOrder, EqualsIntegerArithmetic) {
   EXPECT_GT(ties, 100);
 }
 
-TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
-  Random random(61);
-  const std::vector<DepthPlane<float>> planes = hard_planes(random);
-  for_positions({32, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
-    for (std::size_t i = 1; i < planes.size(); ++i) {
-      std::uint32_t masks[8];
-      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), masks);
-      for (std::size_t w = 0; w < patterns.size(); ++w)
-        for (std::size_t s = 0; s < 32; ++s)
-          ASSERT_EQ(masks[w] >> s & 1,
-                    nearer_formula(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
-              << i << " position " << 32 * w + s;
-    }
-  });
-}
-
 // Masks without positions, with all of them, with one, and random ones; a word may be empty while others are not.
 std::vector<std::array<std::uint32_t, 8>> hard_masks(Random& random) {
   std::vector<std::array<std::uint32_t, 8>> masks(2);
@@ -96,6 +80,29 @@ std::vector<std::array<std::uint32_t, 8>> hard_masks(Random& random) {
 
 bool has(const std::array<std::uint32_t, 8>& mask, std::size_t position) {
   return mask[position / 32] >> (position % 32) & 1;
+}
+
+// At all positions, and at those of a mask alone.
+TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
+  Random random(61);
+  const std::vector<DepthPlane<float>> planes = hard_planes(random);
+  const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
+  for_positions({32, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+      const std::array<std::uint32_t, 8>& where = masks[i % masks.size()];
+      std::uint32_t all[8], some[8];
+      std::fill(some, some + 8, ~0u);
+      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), all);
+      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), some, where.data());
+      for (std::size_t w = 0; w < patterns.size(); ++w) {
+        ASSERT_EQ(some[w], all[w] & where[w]) << i << " word " << w;
+        for (std::size_t s = 0; s < 32; ++s)
+          ASSERT_EQ(all[w] >> s & 1,
+                    nearer_formula(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
+              << i << " position " << 32 * w + s;
+      }
+    }
+  });
 }
 
 TEST(PlaneOrder, FarthestOnEveryTargetEqualsTheFormulaOnFloat) {
@@ -155,22 +162,6 @@ TEST(PlaneOrder, PositionSumsAreSumsOfIntegers) {
       ASSERT_EQ(squares.xx, xx) << i;
       ASSERT_EQ(squares.xy, xy) << i;
       ASSERT_EQ(squares.yy, yy) << i;
-    }
-  });
-}
-
-TEST(PlaneOrder, NearerLooksOnlyAtPositionsOfTheMask) {
-  Random random(67);
-  const std::vector<DepthPlane<float>> planes = hard_planes(random);
-  const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
-  for_positions({32, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
-    for (std::size_t i = 1; i < planes.size(); ++i) {
-      const std::array<std::uint32_t, 8>& where = masks[i % masks.size()];
-      std::uint32_t all[8], some[8];
-      std::fill(some, some + 8, ~0u);
-      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), all);
-      nearer_positions(planes[i], planes[i - 1], offsets_of(patterns).data(), patterns.size(), some, where.data());
-      for (std::size_t w = 0; w < patterns.size(); ++w) ASSERT_EQ(some[w], all[w] & where[w]) << i << " word " << w;
     }
   });
 }

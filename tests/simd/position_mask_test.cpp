@@ -21,7 +21,8 @@ WideMask mask_of_samples(const TriangleInPixelOf<std::int64_t>& t, int positions
   return mask;
 }
 
-TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
+// The positions are those of cell_patterns, and the covered ones are those that samples find.
+TEST(PositionMask, KernelAndTwinEqualSampleMasksOnRandomTriangles) {
   Random random(61);
   std::vector<TriangleInPixel> in;
   std::vector<TriangleInPixelOf<std::int64_t>> wide;
@@ -31,11 +32,15 @@ TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   }
   for (const int positions : {32, 64, 128, 256}) {
     const PositionGrid grid(positions);
+    std::vector<WideMask> expected;
+    for (const TriangleInPixelOf<std::int64_t>& t : wide) {
+      expected.push_back(mask_of_samples(t, positions));
+      ASSERT_EQ(position_mask_scalar(t, grid), expected.back()) << "triangle " << expected.size() << ", " << positions;
+    }
     on_every_target([&] {
       std::vector<WideMask> masks(in.size());
       position_masks(in.data(), in.size(), grid, masks.data());
-      for (std::size_t i = 0; i < in.size(); ++i)
-        ASSERT_EQ(masks[i], position_mask_scalar(wide[i], grid)) << "triangle " << i << ", " << positions;
+      ASSERT_EQ(masks, expected) << positions;
     });
   }
 }
@@ -80,17 +85,6 @@ TEST(PositionMask, TestsTheEdgesThatCutThePixel) {
   EXPECT_EQ(tested({{{50, 50}, {200, 50}, {50, 200}}}), expect(3, 0));
   constexpr std::int64_t kFar = 1 << 21;
   EXPECT_EQ(tested({{{128, -kFar}, {kFar, 0}, {128, kFar}}}), expect(0, 1));
-}
-
-// The positions are those of cell_patterns, and the covered ones are those that sample_masks finds.
-TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
-  Random random(63);
-  for (const int positions : {32, 64, 128, 256}) {
-    for (int i = 0; i < 2'000; ++i) {
-      const TriangleInPixelOf<std::int64_t> t = in_pixel(random_triangle(random));
-      ASSERT_EQ(position_mask_scalar(t, PositionGrid(positions)), mask_of_samples(t, positions)) << "triangle " << i;
-    }
-  }
 }
 
 }  // namespace beampipe::position_mask_test

@@ -61,32 +61,6 @@ TEST(SampleMask, KernelEqualsTwinForEveryPatternSize) {
   }
 }
 
-TEST(SampleMask, KernelEqualsTwinForTheStandardPatterns) {
-  Random random(22);
-  std::vector<SamplePattern> patterns = {hammersley_pattern(), standard_pattern(8, 128, 64),
-                                         standard_pattern(8, 16, 16)};
-  for (const int count : {1, 2, 4, 8, 16}) patterns.push_back(standard_pattern(count));
-  for (const SamplePattern& pattern : patterns) {
-    std::vector<CellEdges> cells;
-    for (int i = 0; i < 5'000; ++i) cells.push_back(random_edges(random, pattern));
-    expect_kernel_equals_twin(cells, pattern);
-  }
-}
-
-TEST(SampleMask, SampleOnAnEdgeIsCovered) {
-  // x >= 128, y <= 64, and an edge that has everything inside.
-  SamplePattern pattern;
-  pattern.count = 3;
-  pattern.x = {128, 127, 128};
-  pattern.y = {64, 64, 65};
-  const CellEdges cell{{1, 0, 0}, {0, -1, 0}, {-128, 64, 0}};
-  on_every_target([&] {
-    std::uint32_t mask = 0;
-    sample_masks(&cell, 1, pattern, &mask);
-    EXPECT_EQ(mask, 0b001u);
-  });
-}
-
 // Cells of a grid, of several triangles in a row.
 struct GridCells {
   std::vector<GridEdges> edges;
@@ -136,21 +110,6 @@ TEST(SampleMask, GridKernelEqualsTwinForEveryPatternSize) {
       ASSERT_EQ(masks, grid.expected) << count << " samples";
     });
   }
-}
-
-TEST(SampleMask, CellsOfAGridLieSideBySide) {
-  // x >= 640, y <= 320, and an edge that has everything inside; cells of 256 x 256.
-  SamplePattern pattern;
-  pattern.count = 3;
-  pattern.x = {128, 127, 128};
-  pattern.y = {64, 64, 65};
-  const GridEdges edges{{1, 0, 0}, {0, -1, 0}, {256, 0, 0}, {0, -256, 0}, {-640, 320, 0}};
-  const std::vector<GridCell> cells = {{0, 2, 1}, {0, 3, 1}, {0, 2, 0}, {0, 1, 1}};
-  on_every_target([&] {
-    std::vector<std::uint32_t> masks(4);
-    EXPECT_EQ(sample_masks(&edges, cells.data(), cells.size(), pattern, masks.data()), 5u);
-    EXPECT_EQ(masks, (std::vector<std::uint32_t>{0b001, 0b011, 0b101, 0b000}));
-  });
 }
 
 }  // namespace beampipe::sample_mask_test

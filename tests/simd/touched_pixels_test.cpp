@@ -5,42 +5,6 @@
 
 namespace beampipe::touched_pixels_test {
 
-constexpr std::uint64_t kUpperLeft = 1;  // pixel of the first quad
-
-// Depth grows by 1/64 per pixel to the right and falls by 1/32 per pixel down. At the centre of pixel (6, 3) it is
-// -1/2 + 2.5/64 - 1.5/32 = -65/128, and half a pixel away by up to 3/128 more or less.
-TEST(TouchedPixels, HaveBounds) {
-  const AnchoredPlane<double> plane{-0.5, 1.0 / 64, -1.0 / 32, 4, 2};
-  const PixelRow row{6, 3, 0, {kUpperLeft, 0}};
-  on_every_target([&] {
-    TouchedPixels pixels;
-    ASSERT_EQ(touched_pixels(&row, 1, plane, {-1.0f, 0.0f}, pixels), 1u);
-    EXPECT_EQ(pixels.nearest[0], -68.0f / 128);
-    EXPECT_EQ(pixels.farthest[0], -62.0f / 128);
-    touched_pixels(&row, 1, plane, {-67.0f / 128, -63.0f / 128}, pixels);
-    EXPECT_EQ(pixels.nearest[0], -67.0f / 128) << "no nearer than the vertices";
-    EXPECT_EQ(pixels.farthest[0], -63.0f / 128) << "no farther than the vertices";
-  });
-}
-
-// Third and fourth pixel of quad 9, first of quad 10, and last of the row, which is in quad 9 + 15.
-TEST(TouchedPixels, AreInTheOrderOfBits) {
-  const PixelRow rows[2] = {{10, 20, 9, {0b1'1100 | std::uint64_t{1} << 63, 0b1000}}, {0, 22, 30, {0b10, 0b10}}};
-  on_every_target([&] {
-    TouchedPixels pixels;
-    ASSERT_EQ(touched_pixels(rows, 2, {}, {-1.0f, 0.0f}, pixels), 5u);
-    const std::int32_t x[] = {10, 11, 12, 41, 1}, y[] = {21, 21, 20, 21, 22};
-    const std::uint32_t quad[] = {9, 9, 10, 24, 30};
-    const bool full[] = {false, true, false, false, true};
-    for (std::size_t i = 0; i < 5; ++i) {
-      EXPECT_EQ(pixels.x[i], x[i]) << i;
-      EXPECT_EQ(pixels.y[i], y[i]) << i;
-      EXPECT_EQ(pixels.quad[i], quad[i]) << i;
-      EXPECT_EQ(pixels.full[i] != 0, full[i]) << i;
-    }
-  });
-}
-
 // As many as there can be, on a plane without rounding: depths are multiples of 2^-20.
 TEST(TouchedPixels, FillBlocks) {
   Random random(65);

@@ -56,22 +56,6 @@ TEST(TriangleSetup, PlanesEqualTheFormulaOnEveryTarget) {
   }
 }
 
-TEST(TriangleSetup, APlaneDoesNotDependOnTheOrderOfVertices) {
-  Random random(72);
-  for (int i = 0; i < 2'000; ++i) {
-    const ScreenVertex<double> p = random_vertex(random, {}), q = random_vertex(random, p),
-                               r = random_vertex(random, q);
-    if ((q.x - p.x) * (r.y - p.y) == (r.x - p.x) * (q.y - p.y)) continue;
-    const AnchoredPlane<double> one = depth_plane_of(p, q, r);
-    for (const AnchoredPlane<double>& other :
-         {depth_plane_of(q, r, p), depth_plane_of(r, q, p), depth_plane_of(q, p, r)}) {
-      ASSERT_EQ(one.z, other.z) << i;
-      ASSERT_EQ(bits_of(one.dzdx), bits_of(other.dzdx)) << i;
-      ASSERT_EQ(bits_of(one.dzdy), bits_of(other.dzdy)) << i;
-    }
-  }
-}
-
 TEST(TriangleSetup, NormalsEqualTheFormulaOnEveryTarget) {
   Random random(73);
   for (int block = 0; block < 3'000; ++block) {

@@ -132,26 +132,6 @@ TEST(VertexTransform, EqualsIntegerArithmetic) {
   });
 }
 
-TEST(VertexTransform, CornersOfTheViewLandOnCornersOfThePicture) {
-  const VertexTransform transform = camera(1, 3, 1);
-  const std::vector<float> positions = {-1, 1, -1, 3, -3, -3, 0, 0, -2, 0, 0, 2};
-  on_every_target([&] {
-    std::vector<ProjectedVertex> found(4);
-    EXPECT_EQ(transform_vertices(positions.data(), 4, transform, found.data()), 3u);
-    const auto place = [](const ProjectedVertex& vertex) { return std::pair(vertex.x, vertex.y); };
-    EXPECT_EQ(place(found[0]), std::pair(0, 0));
-    EXPECT_EQ(place(found[1]), std::pair(1280 * 256, 720 * 256));
-    EXPECT_EQ(place(found[2]), std::pair(640 * 256, 360 * 256));
-    EXPECT_EQ(found[0].screen.z, -1.0) << "near plane";
-    EXPECT_NEAR(found[1].screen.z, 0, 1e-15) << "far plane";
-    EXPECT_FALSE(found[3].in_view) << "behind the camera";
-    for (std::size_t i = 0; i < 4; ++i) {
-      const float* p = positions.data() + 3 * i;
-      EXPECT_EQ(found[i].in_view, transform_vertex_scalar(transform, p[0], p[1], p[2]).in_view) << i;
-    }
-  });
-}
-
 TEST(VertexTransform, TheEyeIsNotInView) {
   VertexTransform transform = camera(1, 3, 1);
   transform.to_clip[14] = 0;  // x, y, z and w are 0 there
