@@ -87,39 +87,29 @@ TEST(SpirvArithmetic, FloatsAsInCpp) {
 }
 
 TEST(SpirvArithmetic, ComparisonsAsInCpp) {
-  comparison("%t = OpFOrdEqual %b4 %va %vb", [](const Inputs& in) { return in.a == in.b; });
-  comparison("%t = OpFOrdNotEqual %b4 %va %vb", [](const Inputs& in) { return in.a != in.b; });
-  comparison("%t = OpFOrdLessThan %b4 %va %vb", [](const Inputs& in) { return in.a < in.b; });
-  comparison("%t = OpFOrdLessThanEqual %b4 %va %vb", [](const Inputs& in) { return in.a <= in.b; });
-  comparison("%t = OpFOrdGreaterThan %b4 %va %vb", [](const Inputs& in) { return in.a > in.b; });
-  comparison("%t = OpFOrdGreaterThanEqual %b4 %va %vb", [](const Inputs& in) { return in.a >= in.b; });
-  // Of what is no number: 0 / 0 and x.
-  const std::string nan = "%n = OpFDiv %v4 %f0000 %f0000\n%m = OpSelect %v4 %which %n %va\n";
-  const std::string which = "%which = OpULessThan %b4 %vi %vj\n" + nan;
+  // Of what is no number, too: 0 / 0 instead of a where i is less than j.
+  const std::string nan =
+      "%which = OpULessThan %b4 %vi %vj\n%n = OpFDiv %v4 %f0000 %f0000\n%m = OpSelect %v4 %which %n %va\n";
   const auto is_nan = [](const Inputs& in) { return in.i < in.j; };
-  comparison(which + "%t = OpFOrdNotEqual %b4 %m %vb", [&](const Inputs& in) { return !is_nan(in) && in.a != in.b; });
-  comparison(which + "%t = OpFUnordNotEqual %b4 %m %vb", [&](const Inputs& in) { return is_nan(in) || in.a != in.b; });
-  comparison(which + "%t = OpFUnordEqual %b4 %m %vb", [&](const Inputs& in) { return is_nan(in) || in.a == in.b; });
-  comparison(which + "%t = OpFUnordLessThan %b4 %m %vb", [&](const Inputs& in) { return is_nan(in) || in.a < in.b; });
-  comparison(which + "%t = OpFUnordLessThanEqual %b4 %m %vb",
-             [&](const Inputs& in) { return is_nan(in) || in.a <= in.b; });
-  comparison(which + "%t = OpFUnordGreaterThan %b4 %m %vb",
-             [&](const Inputs& in) { return is_nan(in) || in.a > in.b; });
-  comparison(which + "%t = OpFUnordGreaterThanEqual %b4 %m %vb",
-             [&](const Inputs& in) { return is_nan(in) || in.a >= in.b; });
-  comparison(which + "%t = OpIsNan %b4 %m", [&](const Inputs& in) { return is_nan(in); });
+  const auto ordered = [&](const std::string& name, const auto& holds) {
+    comparison("%t = OpFOrd" + name + " %b4 %va %vb", [&](const Inputs& in) { return holds(in.a, in.b); });
+    comparison(nan + "%t = OpFOrd" + name + " %b4 %m %vb",
+               [&](const Inputs& in) { return !is_nan(in) && holds(in.a, in.b); });
+    comparison(nan + "%t = OpFUnord" + name + " %b4 %m %vb",
+               [&](const Inputs& in) { return is_nan(in) || holds(in.a, in.b); });
+  };
+  const auto less_or_greater = [&](const std::string& name, const auto& holds) {
+    ordered(name, holds);
+    comparison("%t = OpU" + name + " %b4 %vi %vj", [&](const Inputs& in) { return holds(in.i, in.j); });
+    comparison("%t = OpS" + name + " %b4 %vi %vj", [&](const Inputs& in) { return holds(s(in.i), s(in.j)); });
+  };
+  ordered("Equal", std::equal_to<>()), ordered("NotEqual", std::not_equal_to<>());
+  less_or_greater("LessThan", std::less<>()), less_or_greater("LessThanEqual", std::less_equal<>());
+  less_or_greater("GreaterThan", std::greater<>()), less_or_greater("GreaterThanEqual", std::greater_equal<>());
+  comparison(nan + "%t = OpIsNan %b4 %m", is_nan);
   comparison("%q = OpFDiv %v4 %va %f0000\n%t = OpIsInf %b4 %q", [](const Inputs& in) { return in.a != 0; });
-
   comparison("%t = OpIEqual %b4 %vi %vj", [](const Inputs& in) { return in.i == in.j; });
   comparison("%t = OpINotEqual %b4 %vi %vj", [](const Inputs& in) { return in.i != in.j; });
-  comparison("%t = OpULessThan %b4 %vi %vj", [](const Inputs& in) { return in.i < in.j; });
-  comparison("%t = OpULessThanEqual %b4 %vi %vj", [](const Inputs& in) { return in.i <= in.j; });
-  comparison("%t = OpUGreaterThan %b4 %vi %vj", [](const Inputs& in) { return in.i > in.j; });
-  comparison("%t = OpUGreaterThanEqual %b4 %vi %vj", [](const Inputs& in) { return in.i >= in.j; });
-  comparison("%t = OpSLessThan %b4 %vi %vj", [](const Inputs& in) { return s(in.i) < s(in.j); });
-  comparison("%t = OpSLessThanEqual %b4 %vi %vj", [](const Inputs& in) { return s(in.i) <= s(in.j); });
-  comparison("%t = OpSGreaterThan %b4 %vi %vj", [](const Inputs& in) { return s(in.i) > s(in.j); });
-  comparison("%t = OpSGreaterThanEqual %b4 %vi %vj", [](const Inputs& in) { return s(in.i) >= s(in.j); });
 
   const std::string two = "%x = OpULessThan %b4 %vi %vj\n%y = OpULessThan %b4 %vj %vk\n";
   const auto x = [](const Inputs& in) { return in.i < in.j; };
@@ -147,18 +137,15 @@ TEST(SpirvArithmetic, IntegersAsInCpp) {
     if (in.j == 0) return ~0u;
     return static_cast<std::uint32_t>(((wide(in.i) % wide(in.j)) + wide(in.j)) % wide(in.j));
   });
-  integers(
-      "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShiftLeftLogical %u4 %vi %n",
-      [](const Inputs& in) { return in.i << (in.j & 31); },
-      "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
-  integers(
-      "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShiftRightLogical %u4 %vi %n",
-      [](const Inputs& in) { return in.i >> (in.j & 31); },
-      "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
-  integers(
-      "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShiftRightArithmetic %u4 %vi %n",
-      [](const Inputs& in) { return static_cast<std::uint32_t>(s(in.i) >> (in.j & 31)); },
-      "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
+  const auto shift = [](const std::string& name, auto&& formula) {
+    integers(
+        "%n = OpBitwiseAnd %u4 %vj %mask\n%r = OpShift" + name + " %u4 %vi %n",
+        [&](const Inputs& in) { return static_cast<std::uint32_t>(formula(in.i, in.j & 31)); },
+        "%u31 = OpConstant %uint 31\n%mask = OpConstantComposite %u4 %u31 %u31 %u31 %u31");
+  };
+  shift("LeftLogical", [](std::uint32_t x, std::uint32_t n) { return x << n; });
+  shift("RightLogical", [](std::uint32_t x, std::uint32_t n) { return x >> n; });
+  shift("RightArithmetic", [](std::uint32_t x, std::uint32_t n) { return s(x) >> n; });
   integers("%r = OpBitwiseOr %u4 %vi %vj", [](const Inputs& in) { return in.i | in.j; });
   integers("%r = OpBitwiseXor %u4 %vi %vj", [](const Inputs& in) { return in.i ^ in.j; });
   integers("%r = OpNot %u4 %vi", [](const Inputs& in) { return ~in.i; });
@@ -206,25 +193,17 @@ OpStore %iout %r
     EXPECT_EQ(shader.integer(2, lane), (u + sign) ^ inserted);
   }
 
-  const std::string pair = "%pair = OpTypeStruct %u4 %u4";
-  integers(
-      "%p = OpUMulExtended %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
-      [](const Inputs& in) { return static_cast<std::uint32_t>(std::uint64_t{in.i} * in.j >> 32); }, pair);
-  integers(
-      "%p = OpSMulExtended %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
-      [](const Inputs& in) {
-        return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::int64_t{s(in.i)} * s(in.j)) >> 32);
-      },
-      pair);
-  integers(
-      "%p = OpUMulExtended %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 0",
-      [](const Inputs& in) { return in.i * in.j; }, pair);
-  integers(
-      "%p = OpIAddCarry %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
-      [](const Inputs& in) { return static_cast<std::uint32_t>((std::uint64_t{in.i} + in.j) >> 32); }, pair);
-  integers(
-      "%p = OpISubBorrow %pair %vi %vj\n%r = OpCompositeExtract %u4 %p 1",
-      [](const Inputs& in) { return in.i < in.j ? 1u : 0u; }, pair);
+  const auto part = [](const std::string& name, char part_of_pair, auto&& formula) {
+    integers(
+        "%p = Op" + name + " %pair %vi %vj\n%r = OpCompositeExtract %u4 %p " + part_of_pair,
+        [&](const Inputs& in) { return static_cast<std::uint32_t>(formula(in.i, in.j)); },
+        "%pair = OpTypeStruct %u4 %u4");
+  };
+  part("UMulExtended", '1', [](std::uint64_t x, std::uint64_t y) { return x * y >> 32; });
+  part("SMulExtended", '1', [](std::uint32_t x, std::uint32_t y) { return std::int64_t{s(x)} * s(y) >> 32; });
+  part("UMulExtended", '0', [](std::uint32_t x, std::uint32_t y) { return x * y; });
+  part("IAddCarry", '1', [](std::uint64_t x, std::uint64_t y) { return (x + y) >> 32; });
+  part("ISubBorrow", '1', [](std::uint32_t x, std::uint32_t y) { return x < y; });
 }
 
 TEST(SpirvArithmetic, Conversions) {
@@ -266,12 +245,11 @@ TEST(SpirvArithmetic, HalfFloats) {
   const std::string both = "%x = OpFConvert %h4 %va\n%y = OpFConvert %h4 %vb\n";
   floats("%x = OpFConvert %h4 %va\n%r = OpFConvert %v4 %x", [&](const Inputs& in) { return nearest_half(in.a); });
   floats("%r = OpQuantizeToF16 %v4 %va", [&](const Inputs& in) { return nearest_half(in.a); });
-  floats(both + "%z = OpFAdd %h4 %x %y\n%r = OpFConvert %v4 %z",
-         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) + nearest_half(in.b)); });
-  floats(both + "%z = OpFMul %h4 %x %y\n%r = OpFConvert %v4 %z",
-         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) * nearest_half(in.b)); });
-  floats(both + "%z = OpFDiv %h4 %x %y\n%r = OpFConvert %v4 %z",
-         [&](const Inputs& in) { return nearest_half(nearest_half(in.a) / nearest_half(in.b)); });
+  const auto two = [&](const std::string& name, const auto& formula) {
+    floats(both + "%z = OpF" + name + " %h4 %x %y\n%r = OpFConvert %v4 %z",
+           [&](const Inputs& in) { return nearest_half(formula(nearest_half(in.a), nearest_half(in.b))); });
+  };
+  two("Add", std::plus<>()), two("Mul", std::multiplies<>()), two("Div", std::divides<>());
   // Through the bits, as zink writes it.
   integers("%x = OpFConvert %h4 %va\n%y = OpBitcast %us4 %x\n%r = OpUConvert %u4 %y",
            [](const Inputs& in) { return std::uint32_t{half_of(in.a)}; });

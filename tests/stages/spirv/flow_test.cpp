@@ -134,7 +134,7 @@ class Assembler {
     store();
     for (std::uint32_t i = 0; i < kVariables; ++i)
       variables_ += "%x" + std::to_string(i) + " = OpVariable %pu Function\n";
-    std::string globals = "%pu = OpTypePointer Function %uint\n";
+    std::string globals;
     for (std::uint32_t i = 5; i < 16; ++i)
       globals += "%n" + std::to_string(i) + " = OpConstant %uint " + std::to_string(i) + "\n";
     return {.body = variables_ + "; begin\n" + text_, .globals = globals};
@@ -303,25 +303,15 @@ TEST(SpirvFlow, LanesDoNotDisturbEachOther) {
 
 // Two variables change places in each turn of a loop, so that their phis are copied to each other.
 TEST(SpirvFlow, PhisOfALoopAreCopiedAllAtOnce) {
-  TestShader shader(ShaderParts{.body = R"(
-%first = OpCompositeExtract %uint %vi 0
-%second = OpCompositeExtract %uint %vi 1
-%times = OpCompositeExtract %uint %vi 2
-OpBranch %header
-%header = OpLabel
-%x = OpPhi %uint %first %entry %y %again
-%y = OpPhi %uint %second %entry %x %again
+  TestShader shader(ShaderParts{
+      .body = "%times = OpCompositeExtract %uint %vi 2\n" + loop_text(R"(
+%x = OpPhi %uint %vi0 %entry %y %again
+%y = OpPhi %uint %vi1 %entry %x %again
 %n = OpPhi %uint %u0 %entry %n1 %again
-%more = OpULessThan %bool %n %times
-OpLoopMerge %after %again None
-OpBranchConditional %more %again %after
-%again = OpLabel
-%n1 = OpIAdd %uint %n %u1
-OpBranch %header
-%after = OpLabel
-%r = OpCompositeConstruct %u4 %x %y %n %u0
-OpStore %iout %r
-)"});
+)",
+                                                                      "%goes_on = OpULessThan %bool %n %times\n",
+                                                                      "%n1 = OpIAdd %uint %n %u1\n"),
+      .integers = "%x %y %n %u0"});
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) {
     shader.set_integer(3, 0, lane, 100 + lane), shader.set_integer(3, 1, lane, 200 + lane);
     shader.set_integer(3, 2, lane, lane);
@@ -336,16 +326,10 @@ OpStore %iout %r
 
 TEST(SpirvFlow, FunctionsWithEarlyReturns) {
   TestShader shader(ShaderParts{.body = R"(
-%x = OpCompositeExtract %uint %vi 0
-%y = OpFunctionCall %uint %collatz %x
-%r = OpCompositeConstruct %u4 %y %y %y %y
-OpStore %iout %r
+%y = OpFunctionCall %uint %collatz %vi0
 )",
-                                .globals = R"(
-%number_to_number = OpTypeFunction %uint %uint
-%pu = OpTypePointer Function %uint
-%u100 = OpConstant %uint 100
-)",
+                                .integers = "%y %y %y %y",
+                                .globals = "%number_to_number = OpTypeFunction %uint %uint",
                                 .functions = R"(
 %collatz = OpFunction %uint None %number_to_number
 %start = OpFunctionParameter %uint
@@ -394,21 +378,9 @@ OpFunctionEnd
 
 // A loop of 20 turns calls, in its continue construct, a function that ends odd lanes in the turn of their number.
 ShaderParts ending_in_continue(const std::string& how) {
-  return {.body = R"(
-%lane = OpCompositeExtract %uint %vi 0
-OpBranch %header
-%header = OpLabel
-%n = OpPhi %uint %u0 %entry %n1 %again
-%goes_on = OpULessThan %bool %n %u20
-OpLoopMerge %after %again None
-OpBranchConditional %goes_on %again %after
-%again = OpLabel
-%n1 = OpFunctionCall %uint %next_after %n %lane
-OpBranch %header
-%after = OpLabel
-%r = OpCompositeConstruct %u4 %n %lane %u0 %u0
-OpStore %iout %r
-)",
+  return {.body = loop_text("%n = OpPhi %uint %u0 %entry %n1 %again\n", "%goes_on = OpULessThan %bool %n %u20\n",
+                            "%n1 = OpFunctionCall %uint %next_after %n %vi0\n"),
+          .integers = "%n %vi0 %u0 %u0",
           .globals = R"(
 %u20 = OpConstant %uint 20
 %of_two = OpTypeFunction %uint %uint %uint
@@ -458,11 +430,9 @@ TEST(SpirvFlow, InvocationsEndInFunctionsOfContinueConstructs) {
 // The compiler's hint changes nothing.
 TEST(SpirvFlow, FunctionsThatAskNotToBeInlined) {
   TestShader shader(ShaderParts{.body = R"(
-%x = OpCompositeExtract %uint %vi 0
-%y = OpFunctionCall %uint %twice %x
-%r = OpCompositeConstruct %u4 %y %y %y %y
-OpStore %iout %r
+%y = OpFunctionCall %uint %twice %vi0
 )",
+                                .integers = "%y %y %y %y",
                                 .globals = "%number_to_number = OpTypeFunction %uint %uint\n",
                                 .functions = R"(
 %twice = OpFunction %uint DontInline %number_to_number
@@ -479,21 +449,10 @@ OpFunctionEnd
 
 // Three times an odd number is never 0.
 TEST(SpirvFlow, EndlessLoopsAreStopped) {
-  TestShader shader(ShaderParts{.body = R"(
-%first = OpCompositeExtract %uint %vi 0
-OpBranch %header
-%header = OpLabel
-%x = OpPhi %uint %first %entry %x3 %again
-%goes_on = OpINotEqual %bool %x %u0
-OpLoopMerge %after %again None
-OpBranchConditional %goes_on %again %after
-%again = OpLabel
-%x3 = OpIMul %uint %x %u3_
-OpBranch %header
-%after = OpLabel
-%r = OpCompositeConstruct %u4 %x %u1 %u1 %u1
-OpStore %iout %r
-)"});
+  TestShader shader(
+      ShaderParts{.body = loop_text("%x = OpPhi %uint %vi0 %entry %x3 %again\n",
+                                    "%goes_on = OpINotEqual %bool %x %u0\n", "%x3 = OpIMul %uint %x %u3_\n"),
+                  .integers = "%x %u1 %u1 %u1"});
   EXPECT_TRUE(shader.run());
   shader.set_integer(3, 0, 5, 1), shader.set_integer(3, 0, 9, 1);
   EXPECT_FALSE(shader.run());
@@ -504,21 +463,10 @@ OpStore %iout %r
 
 // The number in the lane is counted down, in steps of about ten.
 TEST(SpirvFlow, LanesMayBeStoppedSooner) {
-  TestShader shader(ShaderParts{.body = R"(
-%first = OpCompositeExtract %uint %vi 0
-OpBranch %header
-%header = OpLabel
-%x = OpPhi %uint %first %entry %x1 %again
-%goes_on = OpINotEqual %bool %x %u0
-OpLoopMerge %after %again None
-OpBranchConditional %goes_on %again %after
-%again = OpLabel
-%x1 = OpISub %uint %x %u1
-OpBranch %header
-%after = OpLabel
-%r = OpCompositeConstruct %u4 %x %u1 %u1 %u1
-OpStore %iout %r
-)"});
+  TestShader shader(
+      ShaderParts{.body = loop_text("%x = OpPhi %uint %vi0 %entry %x1 %again\n",
+                                    "%goes_on = OpINotEqual %bool %x %u0\n", "%x1 = OpISub %uint %x %u1\n"),
+                  .integers = "%x %u1 %u1 %u1"});
   shader.set_integer(3, 0, 3, 50), shader.set_integer(3, 0, 4, 500);
   EXPECT_TRUE(shader.run());
   shader.executor.run(shader.resources, kShaderLanes, ~std::uint64_t{0}, 0, shader.counts, 2000);
@@ -529,29 +477,19 @@ OpStore %iout %r
 // A loop that only moves values around: 100 of them, which the last one enters at the front.
 TEST(SpirvFlow, WhatLoopsMoveAroundIsBoundedToo) {
   constexpr int kValues = 100;
-  std::string body = "%first = OpCompositeExtract %uint %vi 0\nOpBranch %header\n%header = OpLabel\n";
+  std::string phis;
   for (int i = 0; i < kValues; ++i)
-    body +=
-        "%x" + std::to_string(i) + " = OpPhi %uint %first %entry %x" + std::to_string((i + 1) % kValues) + " %again\n";
-  body += R"(
-%goes_on = OpINotEqual %bool %x0 %u1
-OpLoopMerge %after %again None
-OpBranchConditional %goes_on %again %after
-%again = OpLabel
-OpBranch %header
-%after = OpLabel
-%r = OpCompositeConstruct %u4 %x0 %x1 %x2 %x3
-OpStore %iout %r
-)";
-  TestShader shader(ShaderParts{.body = body});
+    phis +=
+        "%x" + std::to_string(i) + " = OpPhi %uint %vi0 %entry %x" + std::to_string((i + 1) % kValues) + " %again\n";
+  TestShader shader(ShaderParts{.body = loop_text(phis, "%goes_on = OpINotEqual %bool %x0 %u1\n", ""),
+                                .integers = "%x0 %x1 %x2 %x3"});
   EXPECT_FALSE(shader.run(1));
   EXPECT_LE(shader.counts.instructions, ShaderExecutor::kMostSteps / kValues);  // one comparison each time
 }
 
 TEST(SpirvFlow, DemotedInvocationsGoOnAsHelpers) {
   TestShader shader(ShaderParts{.body = R"(
-%x = OpCompositeExtract %uint %vi 0
-%goes = OpIEqual %bool %x %u0
+%goes = OpIEqual %bool %vi0 %u0
 %before = OpIsHelperInvocationEXT %bool
 OpSelectionMerge %end None
 OpBranchConditional %goes %gone %end
@@ -564,11 +502,9 @@ OpBranch %end
 %z = OpSelect %uint %after_ %u1 %u0
 %f = OpCompositeExtract %float %va 0
 %dx = OpDPdx %float %f
-%r = OpCompositeConstruct %u4 %y %z %u0 %u0
-OpStore %iout %r
-%d = OpCompositeConstruct %v4 %dx %dx %dx %dx
-OpStore %out %d
 )",
+                                .floats = "%dx %dx %dx %dx",
+                                .integers = "%y %z %u0 %u0",
                                 .capabilities = "OpCapability DemoteToHelperInvocationEXT\n"});
   EXPECT_TRUE(shader.program.discards);
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) {

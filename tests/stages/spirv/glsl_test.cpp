@@ -46,65 +46,43 @@ double worst_error(const std::string& name, Function function, float least, floa
 }
 
 TEST(SpirvGlsl, FunctionsOfOneNumberAreNearlyTheNearestFloats) {
-  const auto expect = [](const std::string& name, Function function, float least, float most, double bound = 0.51) {
-    EXPECT_LT(worst_error(name, function, least, most), bound) << name;
+  const struct {
+    const char* name;
+    Function function;
+    float least, most;
+    double bound = 0.51;
+  } cases[] = {
+      {"Sin", [](double x) { return std::sin(x); }, -10, 10},
+      {"Sin", [](double x) { return std::sin(x); }, -1e9f, 1e9f},
+      {"Cos", [](double x) { return std::cos(x); }, -10, 10},
+      {"Cos", [](double x) { return std::cos(x); }, -1e9f, 1e9f},
+      {"Tan", [](double x) { return std::tan(x); }, -1e6f, 1e6f},
+      {"Asin", [](double x) { return std::asin(x); }, -1, 1},
+      {"Acos", [](double x) { return std::acos(x); }, -1, 1},
+      {"Atan", [](double x) { return std::atan(x); }, -1e30f, 1e30f},
+      {"Atan", [](double x) { return std::atan(x); }, -3, 3},
+      {"Exp", [](double x) { return std::exp(x); }, -110, 95},
+      {"Exp2", [](double x) { return std::exp2(x); }, -160, 135},
+      {"Log", [](double x) { return std::log(x); }, 1e-44f, 3e38f},
+      {"Log", [](double x) { return std::log(x); }, 0.5f, 2},
+      {"Log2", [](double x) { return std::log2(x); }, 1e-44f, 3e38f},
+      {"Log2", [](double x) { return std::log2(x); }, 0.5f, 2},
+      {"Sinh", [](double x) { return std::sinh(x); }, -95, 95},
+      {"Sinh", [](double x) { return std::sinh(x); }, -1, 1},
+      {"Cosh", [](double x) { return std::cosh(x); }, -95, 95},
+      {"Tanh", [](double x) { return std::tanh(x); }, -30, 30},
+      {"Tanh", [](double x) { return std::tanh(x); }, -0.2f, 0.2f},
+      {"Asinh", [](double x) { return std::asinh(x); }, -1e30f, 1e30f},
+      {"Asinh", [](double x) { return std::asinh(x); }, -1, 1},
+      {"Acosh", [](double x) { return std::acosh(x); }, 1, 1e30f},
+      {"Acosh", [](double x) { return std::acosh(x); }, 1, 1.01f},
+      {"Atanh", [](double x) { return std::atanh(x); }, -1, 1},
+      {"Atanh", [](double x) { return std::atanh(x); }, -0.01f, 0.01f},
+      {"Sqrt", [](double x) { return std::sqrt(x); }, 0, 1e38f},
+      {"InverseSqrt", [](double x) { return 1 / std::sqrt(x); }, 1e-38f, 1e38f, 1.5},  // two roundings
   };
-  expect(
-      "Sin", [](double x) { return std::sin(x); }, -10, 10);
-  expect(
-      "Sin", [](double x) { return std::sin(x); }, -1e9f, 1e9f);
-  expect(
-      "Cos", [](double x) { return std::cos(x); }, -10, 10);
-  expect(
-      "Cos", [](double x) { return std::cos(x); }, -1e9f, 1e9f);
-  expect(
-      "Tan", [](double x) { return std::tan(x); }, -1e6f, 1e6f);
-  expect(
-      "Asin", [](double x) { return std::asin(x); }, -1, 1);
-  expect(
-      "Acos", [](double x) { return std::acos(x); }, -1, 1);
-  expect(
-      "Atan", [](double x) { return std::atan(x); }, -1e30f, 1e30f);
-  expect(
-      "Atan", [](double x) { return std::atan(x); }, -3, 3);
-  expect(
-      "Exp", [](double x) { return std::exp(x); }, -110, 95);
-  expect(
-      "Exp2", [](double x) { return std::exp2(x); }, -160, 135);
-  expect(
-      "Log", [](double x) { return std::log(x); }, 1e-44f, 3e38f);
-  expect(
-      "Log", [](double x) { return std::log(x); }, 0.5f, 2);
-  expect(
-      "Log2", [](double x) { return std::log2(x); }, 1e-44f, 3e38f);
-  expect(
-      "Log2", [](double x) { return std::log2(x); }, 0.5f, 2);
-  expect(
-      "Sinh", [](double x) { return std::sinh(x); }, -95, 95);
-  expect(
-      "Sinh", [](double x) { return std::sinh(x); }, -1, 1);
-  expect(
-      "Cosh", [](double x) { return std::cosh(x); }, -95, 95);
-  expect(
-      "Tanh", [](double x) { return std::tanh(x); }, -30, 30);
-  expect(
-      "Tanh", [](double x) { return std::tanh(x); }, -0.2f, 0.2f);
-  expect(
-      "Asinh", [](double x) { return std::asinh(x); }, -1e30f, 1e30f);
-  expect(
-      "Asinh", [](double x) { return std::asinh(x); }, -1, 1);
-  expect(
-      "Acosh", [](double x) { return std::acosh(x); }, 1, 1e30f);
-  expect(
-      "Acosh", [](double x) { return std::acosh(x); }, 1, 1.01f);
-  expect(
-      "Atanh", [](double x) { return std::atanh(x); }, -1, 1);
-  expect(
-      "Atanh", [](double x) { return std::atanh(x); }, -0.01f, 0.01f);
-  expect(
-      "Sqrt", [](double x) { return std::sqrt(x); }, 0, 1e38f);
-  expect(
-      "InverseSqrt", [](double x) { return 1 / std::sqrt(x); }, 1e-38f, 1e38f, 1.5);  // two roundings
+  for (const auto& [name, function, least, most, bound] : cases)
+    EXPECT_LT(worst_error(name, function, least, most), bound) << name;
 }
 
 TEST(SpirvGlsl, Limits) {
@@ -153,127 +131,111 @@ TEST(SpirvGlsl, ExtremesOfWhatIsNotANumber) {
   }
 }
 
-// Of two and three operands, on numbers within `least` and `most`.
-void expect_near(const std::string& instruction, const std::function<double(double, double, double)>& function,
-                 float least, float most, double units) {
-  TestShader shader(ShaderParts{.body = "%r = OpExtInst %v4 %glsl " + instruction + "\nOpStore %out %r"});
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> uniform(least, most);
-  double worst = 0;
-  for (int round = 0; round < 40; ++round) {
-    std::array<std::array<float, 3>, kShaderLanes> x;
-    for (std::size_t lane = 0; lane < kShaderLanes; ++lane)
-      for (std::uint32_t input = 0; input < 3; ++input) shader.set(input, 2, lane, x[lane][input] = uniform(random));
-    shader.run();
-    for (std::size_t lane = 0; lane < kShaderLanes; ++lane)
-      worst = std::max(worst, units_apart(shader.number(2, lane), function(x[lane][0], x[lane][1], x[lane][2])));
-  }
-  EXPECT_LT(worst, units) << instruction;
-}
-
+// Of up to three operands, on numbers within `least` and `most`.
 TEST(SpirvGlsl, FunctionsOfSeveralNumbers) {
-  expect_near(
-      "Pow %va %vb", [](double x, double y, double) { return std::pow(x, y); }, 0, 20, 0.51);
-  expect_near(
-      "Atan2 %va %vb", [](double y, double x, double) { return std::atan2(y, x); }, -3, 3, 0.51);
-  expect_near(
-      "FMin %va %vb", [](double x, double y, double) { return std::min(x, y); }, -3, 3, 0.01);
-  expect_near(
-      "FMax %va %vb", [](double x, double y, double) { return std::max(x, y); }, -3, 3, 0.01);
-  expect_near(
-      "NMin %va %vb", [](double x, double y, double) { return std::min(x, y); }, -3, 3, 0.01);
-  expect_near(
-      "NMax %va %vb", [](double x, double y, double) { return std::max(x, y); }, -3, 3, 0.01);
-  expect_near(
-      "FClamp %va %f0000 %f1111", [](double x, double, double) { return std::clamp(x, 0.0, 1.0); }, -3, 3, 0.01);
-  expect_near(
-      "NClamp %va %f0000 %f1111", [](double x, double, double) { return std::clamp(x, 0.0, 1.0); }, -3, 3, 0.01);
-  expect_near(
-      "Step %va %vb", [](double edge, double x, double) { return x < edge ? 0.0 : 1.0; }, -3, 3, 0.01);
-  expect_near(
-      "Floor %va", [](double x, double, double) { return std::floor(x); }, -9, 9, 0.01);
-  expect_near(
-      "Ceil %va", [](double x, double, double) { return std::ceil(x); }, -9, 9, 0.01);
-  expect_near(
-      "Trunc %va", [](double x, double, double) { return std::trunc(x); }, -9, 9, 0.01);
-  expect_near(
-      "RoundEven %va", [](double x, double, double) { return std::nearbyint(x); }, -9, 9, 0.01);
-  expect_near(
-      "Fract %va", [](double x, double, double) { return x - std::floor(x); }, -9, 9, 0.51);
-  expect_near(
-      "FAbs %va", [](double x, double, double) { return std::fabs(x); }, -9, 9, 0.01);
-  expect_near(
-      "Radians %va", [](double x, double, double) { return x * M_PI / 180; }, -9, 9, 1.01);
-  expect_near(
-      "Degrees %va", [](double x, double, double) { return x * 180 / M_PI; }, -9, 9, 1.01);
-  expect_near(
-      "Fma %va %vb %vc", [](double x, double y, double z) { return x * y + z; }, 0, 9, 1.01);
-  expect_near(
-      "FMix %va %vb %vc", [](double x, double y, double a) { return x * (1 - a) + y * a; }, 0, 1, 2.01);
-  expect_near(
-      "SmoothStep %va %vb %vc",
-      [](double low, double high, double x) {
-        const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-        return t * t * (3 - 2 * t);
-      },
-      0, 1, 8);
+  const struct {
+    const char* instruction;
+    double (*function)(double, double, double);
+    float least, most;
+    double units;
+  } cases[] = {
+      {"Pow %va %vb", [](double x, double y, double) { return std::pow(x, y); }, 0, 20, 0.51},
+      {"Atan2 %va %vb", [](double y, double x, double) { return std::atan2(y, x); }, -3, 3, 0.51},
+      {"FMin %va %vb", [](double x, double y, double) { return std::min(x, y); }, -3, 3, 0.01},
+      {"FMax %va %vb", [](double x, double y, double) { return std::max(x, y); }, -3, 3, 0.01},
+      {"NMin %va %vb", [](double x, double y, double) { return std::min(x, y); }, -3, 3, 0.01},
+      {"NMax %va %vb", [](double x, double y, double) { return std::max(x, y); }, -3, 3, 0.01},
+      {"FClamp %va %f0000 %f1111", [](double x, double, double) { return std::clamp(x, 0.0, 1.0); }, -3, 3, 0.01},
+      {"NClamp %va %f0000 %f1111", [](double x, double, double) { return std::clamp(x, 0.0, 1.0); }, -3, 3, 0.01},
+      {"Step %va %vb", [](double edge, double x, double) { return x < edge ? 0.0 : 1.0; }, -3, 3, 0.01},
+      {"Floor %va", [](double x, double, double) { return std::floor(x); }, -9, 9, 0.01},
+      {"Ceil %va", [](double x, double, double) { return std::ceil(x); }, -9, 9, 0.01},
+      {"Trunc %va", [](double x, double, double) { return std::trunc(x); }, -9, 9, 0.01},
+      {"RoundEven %va", [](double x, double, double) { return std::nearbyint(x); }, -9, 9, 0.01},
+      {"Fract %va", [](double x, double, double) { return x - std::floor(x); }, -9, 9, 0.51},
+      {"FAbs %va", [](double x, double, double) { return std::fabs(x); }, -9, 9, 0.01},
+      {"Radians %va", [](double x, double, double) { return x * M_PI / 180; }, -9, 9, 1.01},
+      {"Degrees %va", [](double x, double, double) { return x * 180 / M_PI; }, -9, 9, 1.01},
+      {"Fma %va %vb %vc", [](double x, double y, double z) { return x * y + z; }, 0, 9, 1.01},
+      {"FMix %va %vb %vc", [](double x, double y, double a) { return x * (1 - a) + y * a; }, 0, 1, 2.01},
+      {"SmoothStep %va %vb %vc",
+       [](double low, double high, double x) {
+         const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+         return t * t * (3 - 2 * t);
+       },
+       0, 1, 8},
+  };
+  for (const auto& [instruction, function, least, most, units] : cases) {
+    TestShader shader(
+        ShaderParts{.body = std::string("%r = OpExtInst %v4 %glsl ") + instruction + "\nOpStore %out %r"});
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(least, most);
+    double worst = 0;
+    for (int round = 0; round < 40; ++round) {
+      std::array<std::array<float, 3>, kShaderLanes> x;
+      for (std::size_t lane = 0; lane < kShaderLanes; ++lane)
+        for (std::uint32_t input = 0; input < 3; ++input) shader.set(input, 2, lane, x[lane][input] = uniform(random));
+      shader.run();
+      for (std::size_t lane = 0; lane < kShaderLanes; ++lane)
+        worst = std::max(worst, units_apart(shader.number(2, lane), function(x[lane][0], x[lane][1], x[lane][2])));
+    }
+    EXPECT_LT(worst, units) << instruction;
+  }
 }
 
 // Whole results, of lanes' vectors.
 TEST(SpirvGlsl, Vectors) {
-  const auto body = [](const std::string& lines) { return ShaderParts{.body = lines}; };
-  TestShader shader(body(R"(
+  // Components of an input, a float each.
+  const auto set = [](TestShader& to, std::uint32_t location, std::size_t lane, std::initializer_list<float> numbers) {
+    for (std::uint32_t component = 0; const float number : numbers) to.set(location, component++, lane, number);
+  };
+  TestShader shader(ShaderParts{.body = R"(
 %length = OpExtInst %float %glsl Length %va
 %distance = OpExtInst %float %glsl Distance %va %vb
 %unit = OpExtInst %v4 %glsl Normalize %va
 %dot = OpDot %float %va %vb
 %first = OpCompositeExtract %float %unit 0
-%r = OpCompositeConstruct %v4 %length %distance %first %dot
-OpStore %out %r
-)"));
-  for (std::uint32_t i = 0; i < 4; ++i)
-    shader.set(0, i, 9, std::array<float, 4>{1.0f, -2, 4, 10}[i]),
-        shader.set(1, i, 9, std::array<float, 4>{1.0f, 1, 0, 13}[i]);
+)",
+                                .floats = "%length %distance %first %dot"});
+  set(shader, 0, 9, {1, -2, 4, 10}), set(shader, 1, 9, {1, 1, 0, 13});
   shader.run();
   EXPECT_EQ(shader.number(0, 9), 11);
   EXPECT_FLOAT_EQ(shader.number(1, 9), std::sqrt(34.0f));
   EXPECT_FLOAT_EQ(shader.number(2, 9), 1.0f / 11);
   EXPECT_EQ(shader.number(3, 9), 129);
 
-  TestShader cross(body(R"(
+  TestShader cross(ShaderParts{.body = R"(
 %x = OpVectorShuffle %v3 %va %va 0 1 2
 %y = OpVectorShuffle %v3 %vb %vb 0 1 2
 %z = OpExtInst %v3 %glsl Cross %x %y
 %mirrored = OpExtInst %v3 %glsl Reflect %x %y
 %m1 = OpCompositeExtract %float %mirrored 1
-%r = OpCompositeConstruct %v4 %z %m1
-OpStore %out %r
-)"));
-  for (std::uint32_t i = 0; i < 3; ++i)
-    cross.set(0, i, 0, std::array<float, 3>{1.0f, 2, 3}[i]), cross.set(1, i, 0, std::array<float, 3>{0.0f, 1, 0}[i]);
+)",
+                               .floats = "%z %m1"});
+  set(cross, 0, 0, {1, 2, 3}), set(cross, 1, 0, {0, 1, 0});
   cross.run();
   EXPECT_EQ(cross.number(0, 0), -3);
   EXPECT_EQ(cross.number(1, 0), 0);
   EXPECT_EQ(cross.number(2, 0), 1);
   EXPECT_EQ(cross.number(3, 0), -2);
 
-  TestShader facing(body("%f = OpExtInst %v4 %glsl FaceForward %va %vb %vc\nOpStore %out %f"));
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    facing.set(0, i, 0, 5), facing.set(1, i, 0, 1), facing.set(2, i, 0, -1);
-    facing.set(0, i, 1, 5), facing.set(1, i, 1, 1), facing.set(2, i, 1, 1);
+  TestShader facing(ShaderParts{.body = "%f = OpExtInst %v4 %glsl FaceForward %va %vb %vc\nOpStore %out %f"});
+  for (const std::size_t lane : {0, 1}) {
+    const float seen = lane == 0 ? -1 : 1;
+    set(facing, 0, lane, {5, 5, 5, 5}), set(facing, 1, lane, {1, 1, 1, 1}),
+        set(facing, 2, lane, {seen, seen, seen, seen});
   }
   facing.run();
   EXPECT_EQ(facing.number(0, 0), 5);
   EXPECT_EQ(facing.number(0, 1), -5);
 
   // Snell's law: sin of the refracted angle is eta times that of the other; beyond, nothing is refracted.
-  TestShader refract(
-      body("%e = OpCompositeExtract %float %vc 0\n%f = OpExtInst %v4 %glsl Refract %va %vb %e\nOpStore %out %f"));
+  TestShader refract(ShaderParts{
+      .body = "%e = OpCompositeExtract %float %vc 0\n%f = OpExtInst %v4 %glsl Refract %va %vb %e\nOpStore %out %f"});
   const double angle = 0.6;
   for (const std::size_t lane : {0, 1}) {
-    refract.set(0, 0, lane, static_cast<float>(std::sin(angle))),
-        refract.set(0, 1, lane, static_cast<float>(-std::cos(angle)));
-    refract.set(1, 1, lane, 1), refract.set(2, 0, lane, lane == 0 ? 0.75f : 1.9f);
+    set(refract, 0, lane, {static_cast<float>(std::sin(angle)), static_cast<float>(-std::cos(angle))});
+    set(refract, 1, lane, {0, 1}), set(refract, 2, lane, {lane == 0 ? 0.75f : 1.9f});
   }
   refract.run();
   EXPECT_NEAR(refract.number(0, 0), 0.75 * std::sin(angle), 1e-6);
@@ -292,16 +254,14 @@ TEST(SpirvGlsl, PartsOfNumbers) {
 %f0_ = OpCompositeExtract %v4 %f 0
 %f1_ = OpCompositeExtract %i4 %f 1
 %again = OpExtInst %v4 %glsl Ldexp %f0_ %f1_
-%sum = OpFAdd %v4 %rest %w
 %r0 = OpCompositeExtract %float %rest 0
 %r1 = OpCompositeExtract %float %w 0
 %r2 = OpCompositeExtract %float %f0_ 0
 %r3 = OpCompositeExtract %float %again 0
-%r = OpCompositeConstruct %v4 %r0 %r1 %r2 %r3
-OpStore %out %r
 %g = OpBitcast %u4 %f1_
 OpStore %iout %g
 )",
+                                .floats = "%r0 %r1 %r2 %r3",
                                 .globals = "%p4 = OpTypePointer Function %v4\n%frexp = OpTypeStruct %v4 %i4\n"});
   std::mt19937 random(2);
   std::array<float, kShaderLanes> x, y;
@@ -359,20 +319,17 @@ TEST(SpirvGlsl, Packing) {
 %xy = OpVectorShuffle %v2 %va %va 0 1
 %p2 = OpExtInst %uint %glsl PackUnorm2x16 %xy
 %p3 = OpExtInst %uint %glsl PackHalf2x16 %xy
-%p = OpCompositeConstruct %u4 %p0 %p1 %p2 %p3
-OpStore %iout %p
-%word = OpCompositeExtract %uint %vi 0
-%u0_ = OpExtInst %v4 %glsl UnpackUnorm4x8 %word
-%u1_ = OpExtInst %v4 %glsl UnpackSnorm4x8 %word
-%u2__ = OpExtInst %v2 %glsl UnpackHalf2x16 %word
-%u3__ = OpExtInst %v2 %glsl UnpackSnorm2x16 %word
+%u0_ = OpExtInst %v4 %glsl UnpackUnorm4x8 %vi0
+%u1_ = OpExtInst %v4 %glsl UnpackSnorm4x8 %vi0
+%u2__ = OpExtInst %v2 %glsl UnpackHalf2x16 %vi0
+%u3__ = OpExtInst %v2 %glsl UnpackSnorm2x16 %vi0
 %x = OpCompositeExtract %float %u0_ 1
 %y = OpCompositeExtract %float %u1_ 3
 %z = OpCompositeExtract %float %u2__ 1
 %w = OpCompositeExtract %float %u3__ 0
-%r = OpCompositeConstruct %v4 %x %y %z %w
-OpStore %out %r
-)"});
+)",
+                                .floats = "%x %y %z %w",
+                                .integers = "%p0 %p1 %p2 %p3"});
   for (std::uint32_t i = 0; i < 4; ++i) shader.set(0, i, 0, std::array<float, 4>{1.0f, -0.5f, 0.2f, 7.0f}[i]);
   shader.set_integer(3, 0, 0, 0x8000ff80u);
   shader.run();
@@ -423,9 +380,8 @@ OpStore %out %x
 %s11 = OpCompositeExtract %float %s 1 1
 %l1 = OpCompositeExtract %float %l 1
 %e = OpFAdd %float %d %s11
-%r = OpCompositeConstruct %v4 %e %l1 %o10 %t10
-OpStore %out %r
 )",
+                               .floats = "%e %l1 %o10 %t10",
                                .globals = "%m2 = OpTypeMatrix %v2 2"});
   small.set(0, 0, 0, 2), small.set(0, 1, 0, 3), small.set(1, 0, 0, 5), small.set(1, 1, 0, 7);
   small.run();

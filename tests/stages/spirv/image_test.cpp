@@ -66,8 +66,13 @@ OpDecorate %volumes Binding 8
 )";
 
 struct ImageShader : TestShader {
+  // `body`: what makes %r of floats, or %ints of integers, of the image %i_ and the place %uv or anything else.
   explicit ImageShader(const std::string& body, const std::string& globals = "")
-      : TestShader(ShaderParts{.body = body, .globals = kImages + globals, .decorations = kBindings}) {
+      : TestShader(ShaderParts{.body = "%i_ = OpLoad %sampled2 %texture\n%uv = OpVectorShuffle %v2 %va %va 0 1\n" +
+                                       body +
+                                       (body.find("%r = ") != body.npos ? "OpStore %out %r" : "OpStore %iout %ints"),
+                               .globals = kImages + globals,
+                               .decorations = kBindings}) {
     resources.images = &echo;
   }
   Echo echo;
@@ -84,10 +89,7 @@ void set_quads(TestShader& shader) {
 
 TEST(SpirvImages, ImplicitDetailHasTheDifferencesOfItsQuad) {
   ImageShader shader(R"(
-%i_ = OpLoad %sampled2 %texture
-%uv = OpVectorShuffle %v2 %va %va 0 1
 %r = OpImageSampleImplicitLod %v4 %i_ %uv
-OpStore %out %r
 )");
   set_quads(shader);
   shader.run();
@@ -121,12 +123,9 @@ constexpr std::uint64_t kFirsts = 0x1111111111111111;  // lanes: the first of ea
 // itself only matters to lanes that are kept.
 TEST(SpirvImages, HelpersReadWhatDifferencesAreMadeFrom) {
   ImageShader shader(R"(
-%i_ = OpLoad %sampled2 %texture
-%uv = OpVectorShuffle %v2 %va %va 0 1
 %place = OpImageSampleImplicitLod %v4 %i_ %uv
 %there = OpVectorShuffle %v2 %place %place 1 0
 %r = OpImageSampleImplicitLod %v4 %i_ %there
-OpStore %out %r
 )");
   set_quads(shader);
   shader.executor.run(shader.resources, kShaderLanes, ~std::uint64_t{0}, ~kFirsts, shader.counts);
@@ -144,8 +143,6 @@ OpStore %out %r
 // Where lanes go decides what they read next.
 TEST(SpirvImages, HelpersReadWhatDecidesTheirWay) {
   ImageShader shader(R"(
-%i_ = OpLoad %sampled2 %texture
-%uv = OpVectorShuffle %v2 %va %va 0 1
 %vu = OpVectorShuffle %v2 %va %va 1 0
 %texel = OpImageSampleImplicitLod %v4 %i_ %uv
 %red = OpCompositeExtract %float %texel 0
@@ -157,7 +154,6 @@ OpBranch %end
 %end = OpLabel
 %where = OpPhi %v2 %uv %entry %vu %low
 %r = OpImageSampleImplicitLod %v4 %i_ %where
-OpStore %out %r
 )");
   set_quads(shader);
   shader.executor.run(shader.resources, kShaderLanes, ~std::uint64_t{0}, ~kFirsts, shader.counts);
@@ -168,10 +164,8 @@ OpStore %out %r
 
 TEST(SpirvImages, ProjectionsDivide) {
   ImageShader shader(R"(
-%i_ = OpLoad %sampled2 %texture
 %uvq = OpVectorShuffle %v3 %va %va 0 1 2
 %r = OpImageSampleProjImplicitLod %v4 %i_ %uvq Bias|ConstOffset %f2 %offset
-OpStore %out %r
 )",
                      "%offset = OpConstantComposite %i2 %i1 %i2_\n");
   set_quads(shader);
@@ -190,15 +184,14 @@ OpStore %out %r
 
 TEST(SpirvImages, ComparisonsWithASamplerOfTheirOwn) {
   ImageShader shader(R"(
-%i_ = OpLoad %image_array %shadow
+%shadow_ = OpLoad %image_array %shadow
 %s_ = OpLoad %sampler %compare
-%both = OpSampledImage %sampled_array %i_ %s_
+%both = OpSampledImage %sampled_array %shadow_ %s_
 %uvl = OpVectorShuffle %v3 %va %va 0 1 2
 %x = OpImageSampleDrefExplicitLod %float %both %uvl %f1 Lod %f2
 %g = OpImageDrefGather %v4 %both %uvl %f2
 %y = OpCompositeExtract %float %g 1
 %r = OpCompositeConstruct %v4 %x %y %f0 %f0
-OpStore %out %r
 )");
   set_quads(shader);
   shader.run();
@@ -230,8 +223,7 @@ TEST(SpirvImages, FetchesAndQueriesOfAnElement) {
 %a0 = OpCompositeExtract %uint %texel 0
 %a1 = OpCompositeExtract %uint %texel 3
 %a2 = OpCompositeExtract %uint %size 2
-%r = OpCompositeConstruct %u4 %a0 %a1 %a2 %levels
-OpStore %iout %r
+%ints = OpCompositeConstruct %u4 %a0 %a1 %a2 %levels
 )",
                      "%u3 = OpTypeVector %uint 3\n");
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane)
@@ -252,10 +244,7 @@ OpStore %iout %r
 // Only lanes that run the instruction ask, and only they get an answer.
 TEST(SpirvImages, InBranches) {
   ImageShader shader(R"(
-%i_ = OpLoad %sampled2 %texture
-%uv = OpVectorShuffle %v2 %va %va 0 1
-%n = OpCompositeExtract %uint %vi 0
-%odd = OpIEqual %bool %n %u1
+%odd = OpIEqual %bool %vi0 %u1
 OpSelectionMerge %end None
 OpBranchConditional %odd %read %end
 %read = OpLabel
@@ -263,7 +252,6 @@ OpBranchConditional %odd %read %end
 OpBranch %end
 %end = OpLabel
 %r = OpPhi %v4 %f1111 %entry %texel %read
-OpStore %out %r
 )");
   set_quads(shader);
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) shader.set_integer(3, 0, lane, lane % 2);
@@ -280,9 +268,8 @@ TEST(SpirvImages, DifferencesWithMissingNeighbours) {
 %dy = OpDPdy %float %x
 %cx = OpDPdxCoarse %float %x
 %cy = OpDPdyCoarse %float %x
-%r = OpCompositeConstruct %v4 %dx %dy %cx %cy
-OpStore %out %r
-)"});
+)",
+                                .floats = "%dx %dy %cx %cy"});
   // Values of a quad: 1 10 / 100 1000.
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane)
     shader.set(0, 0, lane, std::array{1.0f, 10.0f, 100.0f, 1000.0f}[lane % 4]);
@@ -306,16 +293,15 @@ OpStore %out %r
 // Texels that become 16-bit floats are rounded towards zero.
 TEST(SpirvImages, HalvesOfTexels) {
   ImageShader shader(R"(
-%i_ = OpLoad %image_array %shadow
+%shadow_ = OpLoad %image_array %shadow
 %s_ = OpLoad %sampler %compare
-%both = OpSampledImage %sampled_array %i_ %s_
+%both = OpSampledImage %sampled_array %shadow_ %s_
 %uvl = OpVectorShuffle %v3 %va %va 0 1 2
 %texel = OpImageSampleExplicitLod %v4 %both %uvl Lod %f0
 %bits = OpBitcast %u4 %texel
 %again = OpBitcast %v4 %bits
 %h = OpFConvert %h4 %again
 %r = OpFConvert %v4 %h
-OpStore %out %r
 )");
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNumbers[][2] = {{1 + 0x1p-11f + 0x1p-12f, 1},
@@ -340,9 +326,8 @@ TEST(SpirvImages, WidthsAreSumsOfDifferences) {
 %any = OpFwidth %float %x
 %fine = OpFwidthFine %float %x
 %coarse = OpFwidthCoarse %float %x
-%r = OpCompositeConstruct %v4 %any %fine %coarse %f0
-OpStore %out %r
-)"});
+)",
+                                .floats = "%any %fine %coarse %f0"});
   EXPECT_TRUE(shader.program.takes_differences);
   // Values of a quad: 1 -10 / 100 1000.
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane)

@@ -143,9 +143,8 @@ TEST(SpirvLimits, ArraysOfArrays) {
   EXPECT_EQ(error_of({.body = R"(
 %s = OpVariable %to_a3 Function
 ; begin
-%to_x = OpAccessChain %to_uint %s %u1 %u1 %u1 %u1
-%x = OpCompositeExtract %uint %vi 0
-OpStore %to_x %x
+%to_x = OpAccessChain %pu %s %u1 %u1 %u1 %u1
+OpStore %to_x %vi0
 %all = OpLoad %a3 %s
 %y = OpCompositeExtract %uint %all 1 1 1 1
 %r = OpCompositeConstruct %u4 %y %y %y %y
@@ -153,7 +152,7 @@ OpStore %iout %r
 )",
                       .globals = "%hundred = OpConstant %uint 100\n%a0 = OpTypeArray %uint %hundred\n" +
                                  chained("%a# = OpTypeArray %a@ %hundred\n", 1, 4) +
-                                 "%to_a3 = OpTypePointer Function %a3\n%to_uint = OpTypePointer Function %uint\n"}),
+                                 "%to_a3 = OpTypePointer Function %a3\n"}),
             "expected at most 1048576 parts of values of a function, with those that it calls");
 }
 
@@ -206,7 +205,7 @@ TEST(SpirvLimits, LongSwitches) {
 
 // Each of 1000 cases changes its own variable, so that all need a phi with an operand for each case.
 TEST(SpirvLimits, VariablesThatDependOnTheWay) {
-  EXPECT_EQ(error_of({.body = repeated("%x# = OpVariable %to_uint Function\n", 0, 1000) + "; begin\n" +
+  EXPECT_EQ(error_of({.body = repeated("%x# = OpVariable %pu Function\n", 0, 1000) + "; begin\n" +
                               repeated("OpStore %x# %u1\n", 0, 1000) +
                               "%n = OpCompositeExtract %uint %vi 0\nOpSelectionMerge %after None\nOpSwitch %n %after" +
                               repeated(" # %case#", 0, 1000) + "\n" +
@@ -214,13 +213,13 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                               "%after = OpLabel\n%sum0 = OpLoad %uint %x0\n" +
                               chained("%y# = OpLoad %uint %x#\n%sum# = OpIAdd %uint %sum@ %y#\n", 1, 1000) +
                               "%r = OpCompositeConstruct %u4 %sum999 %sum999 %sum999 %sum999\nOpStore %iout %r\n",
-                      .globals = "%to_uint = OpTypePointer Function %uint\n"}),
+                      .globals = ""}),
             "expected at most 524288 ways between blocks, times variables that change");
   // One variable with as many parts, in 600 cases.
   const auto table_with = [](const std::string& row) {
     return ShaderParts{.body =
                            "%table = OpVariable %to_table Function\n; begin\n%n = OpCompositeExtract %uint %vi 0\n"
-                           "%place = OpAccessChain %to_uint %table %u1 %u2_\n"
+                           "%place = OpAccessChain %pu %table %u1 %u2_\n"
                            "OpSelectionMerge %after None\nOpSwitch %n %after" +
                            repeated(" # %case#", 0, 600) + "\n" +
                            repeated("%case# = OpLabel\nOpStore %place %u2_\nOpBranch %after\n", 0, 600) +
@@ -229,8 +228,7 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                        .globals =
                            "%ten = OpConstant %uint 10\n%hundred = OpConstant %uint 100\n"
                            "%row = OpTypeArray %uint %hundred\n%table_type = OpTypeArray %row " +
-                           row + "\n%to_table = OpTypePointer Function %table_type\n" +
-                           "%to_uint = OpTypePointer Function %uint\n"};
+                           row + "\n%to_table = OpTypePointer Function %table_type\n" + ""};
   };
   EXPECT_EQ(error_of(table_with("%ten")), "expected at most 524288 ways between blocks, times variables that change");
   EXPECT_EQ(error_of(table_with("%u3_")), "no error");
@@ -279,7 +277,6 @@ std::string lists_of(int elements) {
   return "%length = OpConstant %uint " + std::to_string(elements) + R"(
 %list = OpTypeArray %uint %length
 %to_list = OpTypePointer Function %list
-%to_uint = OpTypePointer Function %uint
 %zeros = OpConstantNull %list
 )";
 }
@@ -308,7 +305,7 @@ OpBranch %header
 %after = OpLabel
 OpStore %local %p1
 %index = OpCompositeExtract %uint %vi 1
-%place = OpAccessChain %to_uint %local %index
+%place = OpAccessChain %pu %local %index
 %x = OpLoad %uint %place
 %r = OpCompositeConstruct %u4 %x %x %x %x
 OpStore %iout %r
@@ -329,7 +326,7 @@ TEST(SpirvLimits, ManyLargeValues) {
                               "%made0 = OpCompositeInsert %list %x %zeros 0\n" +
                               chained("%made# = OpCompositeInsert %list %x %made@ #\n", 1, 1500) + R"(
 OpStore %local %made1499
-%place = OpAccessChain %to_uint %local %x
+%place = OpAccessChain %pu %local %x
 %y = OpLoad %uint %place
 %r = OpCompositeConstruct %u4 %y %y %y %y
 OpStore %iout %r
@@ -342,14 +339,14 @@ OpStore %iout %r
 TEST(SpirvLimits, ConstantsOfTwoConstants) {
   EXPECT_EQ(
       error_of({.body = "%local = OpVariable %to_list29 Function\n; begin\nOpStore %local %two29\n"
-                        "%x = OpCompositeExtract %uint %vi 0\n%place = OpAccessChain %to_uint %local" +
+                        "%x = OpCompositeExtract %uint %vi 0\n%place = OpAccessChain %pu %local" +
                         repeated(" %x", 0, 30) +
                         "\n%y = OpLoad %uint %place\n%r = OpCompositeConstruct %u4 %y %y %y %y\nOpStore %iout %r\n",
                 .globals = "%list0 = OpTypeArray %uint %u2_\n%two0 = OpConstantComposite %list0 %u1 %u2_\n" +
                            chained("%list# = OpTypeArray %list@ %u2_\n"
                                    "%two# = OpConstantComposite %list# %two@ %two@\n",
                                    1, 30) +
-                           "%to_list29 = OpTypePointer Function %list29\n%to_uint = OpTypePointer Function %uint\n"}),
+                           "%to_list29 = OpTypePointer Function %list29\n"}),
       "expected at most 1048576 parts of values of a function, with those that it calls");
 }
 
@@ -371,8 +368,8 @@ TEST(SpirvLimits, DeepNesting) {
 // The optimizer would repeat the body of the inner loop 10^18 times.
 TEST(SpirvLimits, LoopsThatAskToBeUnrolled) {
   TestShader shader(ShaderParts{.body = R"(
-%i_ = OpVariable %to_uint Function
-%j_ = OpVariable %to_uint Function
+%i_ = OpVariable %pu Function
+%j_ = OpVariable %pu Function
 ; begin
 %times = OpCompositeExtract %uint %vi 0
 OpStore %i_ %u0
@@ -417,7 +414,6 @@ OpBranch %outer
 %outer_end = OpLabel
 )",
                                 .globals = R"(
-%to_uint = OpTypePointer Function %uint
 %many = OpConstant %uint 1000000000
 )"});
   EXPECT_LT(shader.program.blocks.size(), 20u);

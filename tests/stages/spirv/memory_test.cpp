@@ -56,9 +56,8 @@ TEST(SpirvMemory, OffsetsOfMembersElementsAndColumns) {
 %z = OpCompositeExtract %float %column 1
 %t = OpAccessChain %to_float %buffer %i3_ %i1 %i2_
 %w = OpLoad %float %t
-%r = OpCompositeConstruct %v4 %x %y %z %w
-OpStore %out %r
 )",
+                                .floats = "%x %y %z %w",
                                 .globals = kBlockTypes,
                                 .decorations = kBlockDecorations});
   ASSERT_EQ(shader.program.buffers.size(), 1u);
@@ -75,14 +74,12 @@ OpStore %out %r
 
 TEST(SpirvMemory, IndicesOfLanesAndBounds) {
   TestShader shader(ShaderParts{.body = R"(
-%n = OpCompositeExtract %uint %vi 0
-%p = OpAccessChain %to_v2 %buffer %i4_ %n
+%p = OpAccessChain %to_v2 %buffer %i4_ %vi0
 %pair = OpLoad %v2 %p
-%q = OpAccessChain %to_float %buffer %i1 %n %i1
+%q = OpAccessChain %to_float %buffer %i1 %vi0 %i1
 %y = OpLoad %float %q
-%r = OpCompositeConstruct %v4 %pair %y %f0
-OpStore %out %r
 )",
+                                .floats = "%pair %y %f0",
                                 .globals = kBlockTypes,
                                 .decorations = kBlockDecorations});
   const std::vector<float> numbers = numbered(41);  // ends within a pair
@@ -115,9 +112,8 @@ TEST(SpirvMemory, PushConstantsAndNarrowNumbers) {
 %p2 = OpAccessChain %to_uint %constants %i2_
 %u = OpLoad %uint %p2
 %z = OpConvertUToF %float %u
-%r = OpCompositeConstruct %v4 %x %y %z %f1
-OpStore %out %r
 )",
+                                .floats = "%x %y %z %f1",
                                 .globals = R"(
 %block = OpTypeStruct %h2 %short %uint
 %to_block = OpTypePointer PushConstant %block
@@ -148,9 +144,8 @@ TEST(SpirvMemory, ArraysOfBuffersAsZinkHasThem) {
 %q = OpAccessChain %to_array %p %i0
 %s = OpAccessChain %to_uint %q %u3_
 %x = OpLoad %uint %s
-%r = OpCompositeConstruct %u4 %x %x %x %x
-OpStore %iout %r
 )",
+                                .integers = "%x %x %x %x",
                                 .globals = R"(
 %n8 = OpConstant %uint 8
 %array = OpTypeArray %uint %n8
@@ -181,29 +176,25 @@ TEST(SpirvMemory, LocalArraysWithIndicesOfLanes) {
 %table = OpVariable %to_table Function
 ; begin
 OpStore %table %tens
-%n = OpCompositeExtract %uint %vi 0
-%m = OpCompositeExtract %uint %vi 1
-%p = OpAccessChain %to_uint %table %n %i1
+%p = OpAccessChain %pu %table %vi0 %i1
 %before = OpLoad %uint %p
-%is_odd = OpBitwiseAnd %uint %n %u1
+%is_odd = OpBitwiseAnd %uint %vi0 %u1
 %odd = OpIEqual %bool %is_odd %u1
 OpSelectionMerge %end None
 OpBranchConditional %odd %write %end
 %write = OpLabel
-OpStore %p %n
+OpStore %p %vi0
 OpBranch %end
 %end = OpLabel
-%q = OpAccessChain %to_uint %table %m %i1
+%q = OpAccessChain %pu %table %vi1 %i1
 %after = OpLoad %uint %q
 %whole = OpLoad %table_type %table
 %x = OpCompositeExtract %uint %whole 2 0
-%r = OpCompositeConstruct %u4 %before %after %x %u0
-OpStore %iout %r
 )",
+                                .integers = "%before %after %x %u0",
                                 .globals = R"(
 %table_type = OpTypeArray %u2 %u4_
 %to_table = OpTypePointer Function %table_type
-%to_uint = OpTypePointer Function %uint
 %u10 = OpConstant %uint 10
 %u20 = OpConstant %uint 20
 %u30 = OpConstant %uint 30

@@ -26,11 +26,13 @@ inline std::vector<std::uint32_t> assembled(const std::string& text) {
   return words;
 }
 
-// Inputs %a, %b, %c (4 floats each, loaded as %va, %vb, %vc) and %i, %j, %k (4 integers, loaded as %vi, %vj, %vk),
-// outputs %out (4 floats) and %iout (4 integers). `parts`: see below.
+// Inputs %a, %b, %c (4 floats each, loaded as %va, %vb, %vc) and %i, %j, %k (4 integers, loaded as %vi, %vj, %vk, and
+// the first ones of %vi as %vi0 and %vi1), outputs %out (4 floats) and %iout (4 integers). `parts`: see below.
 struct ShaderParts {
-  std::string body;          // after the inputs have been loaded, without OpReturn
-  std::string globals = "";  // types, constants and variables
+  std::string body;           // after the inputs have been loaded, without OpReturn
+  std::string floats = "";    // four ids, which %out gets at the end
+  std::string integers = "";  // and %iout
+  std::string globals = "";   // types, constants and variables
   std::string decorations = "";
   std::string functions = "";
   std::string capabilities = "";
@@ -118,6 +120,7 @@ OpDecorate %iout Location 1
 %in_u4 = OpTypePointer Input %u4
 %out_v4 = OpTypePointer Output %v4
 %out_u4 = OpTypePointer Output %u4
+%pu = OpTypePointer Function %uint
 %a = OpVariable %in_v4 Input
 %b = OpVariable %in_v4 Input
 %c = OpVariable %in_v4 Input
@@ -140,12 +143,27 @@ OpDecorate %iout Location 1
 %vi = OpLoad %u4 %i
 %vj = OpLoad %u4 %j
 %vk = OpLoad %u4 %k
-)" + (first == std::string::npos ? parts.body : parts.body.substr(first)) +
-          R"(
+%vi0 = OpCompositeExtract %uint %vi 0
+%vi1 = OpCompositeExtract %uint %vi 1
+)" + (first == std::string::npos ? parts.body : parts.body.substr(first));
+  const auto store = [&](const std::string& ids, const std::string& type, const std::string& to) {
+    if (!ids.empty())
+      text += "\n%all_" + to + " = OpCompositeConstruct %" + type + " " + ids + "\nOpStore %" + to + " %all_" + to;
+  };
+  store(parts.floats, "v4", "out"), store(parts.integers, "u4", "iout");
+  text += R"(
 OpReturn
 OpFunctionEnd
 )" + parts.functions;
   return text;
+}
+
+// A loop of which %goes_on is known once `check` has been run. `phis`: numbers from turn to turn, from %entry or
+// %again.
+inline std::string loop_text(const std::string& phis, const std::string& check, const std::string& turn) {
+  return "OpBranch %header\n%header = OpLabel\n" + phis + check +
+         "OpLoopMerge %after %again None\nOpBranchConditional %goes_on %again %after\n%again = OpLabel\n" + turn +
+         "OpBranch %header\n%after = OpLabel\n";
 }
 
 // A loaded shader with its executor.
