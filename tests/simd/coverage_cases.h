@@ -1,11 +1,6 @@
 // Triangles for the coverage tests, and their coverage by polygon clipping in double precision.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "simd/coverage.h"
 #include "simd/depth_range.h"
 #include "tests/simd/random.h"

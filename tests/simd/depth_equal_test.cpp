@@ -1,5 +1,4 @@
 #include "simd/depth_compare.h"
-#include "simd/match.h"
 #include "tests/simd/every_target.h"
 
 namespace beampipe::depth_equal_test {
@@ -34,23 +33,6 @@ TEST(DepthEqual, KernelEqualsTwin) {
       for (std::size_t i = 0; i < items.size(); ++i) EXPECT_EQ(items[i].passed, expected[i]) << samples;
     });
   }
-}
-
-TEST(MatchMasks, KernelEqualsTwin) {
-  std::mt19937 bits(12);
-  std::vector<std::uint32_t> ids(500 * kQuadSamples), expected;
-  std::vector<std::uint8_t> locations(4 * 500);
-  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = bits() % (1 + i / kQuadSamples % 7);
-  for (std::size_t i = 0; i < locations.size(); ++i) {
-    locations[i] = static_cast<std::uint8_t>(bits() % 32);
-    const std::uint32_t* quad = ids.data() + i / 4 * kQuadSamples;
-    expected.push_back(match_mask_scalar(quad, quad[locations[i]]));
-  }
-  on_every_target([&] {
-    std::vector<std::uint32_t> masks(4 * 500);
-    match_masks(ids.data(), locations.data(), 500, masks.data());
-    EXPECT_EQ(masks, expected);
-  });
 }
 
 }  // namespace beampipe::depth_equal_test

@@ -5,32 +5,6 @@
 
 namespace beampipe::depth_span_test {
 
-TEST(DepthSpan, EveryTargetEqualsTheFormulaOnDoubleForEveryLength) {
-  Random random(61);
-  for (std::size_t count = 0; count <= 70; ++count) {
-    std::vector<double> depth(count + 8);
-    for (double& z : depth) z = random.real(-1, 0);
-    const std::vector<std::uint64_t> owner(depth.size(), 5);
-    const DepthSpan span{random.real(-1, 0), random.real(-1, 1), random.real(-0.5, 0.5), random.real(-100, 100),
-                         1.0 / 64};
-    // Some depths equal to those of the span.
-    for (std::size_t i = 0; i < count; i += 3) {
-      const double x = span.x + span.step * static_cast<double>(i);
-      depth[i] = (span.z + span.dzdx * x) + span.row;
-    }
-    std::vector<double> expected_depth = depth;
-    std::vector<std::uint64_t> expected_owner = owner;
-    const std::uint64_t expected = depth_span_scalar(span, 0, count, 9, expected_depth.data(), expected_owner.data());
-    on_every_target([&] {
-      std::vector<double> found_depth = depth;
-      std::vector<std::uint64_t> found_owner = owner;
-      ASSERT_EQ(depth_span(span, count, 9, found_depth.data(), found_owner.data()), expected);
-      ASSERT_EQ(found_depth, expected_depth) << count << " samples";
-      ASSERT_EQ(found_owner, expected_owner) << count << " samples";
-    });
-  }
-}
-
 // On small multiples of powers of two double arithmetic is exact, and so is integer arithmetic.
 TEST(DepthSpan, EqualsIntegerArithmetic) {
   Random random(62);

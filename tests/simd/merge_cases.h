@@ -1,10 +1,6 @@
 // Fragments and aggregates for the merge tests.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <vector>
-
 #include "simd/merge.h"
 #include "tests/simd/random.h"
 
@@ -21,6 +17,12 @@ inline Aggregate flat_surface(float alpha, std::uint32_t mask, float z, float re
           .z_min = z,
           .z_max = z,
           .color = {red * alpha, green * alpha, 0.0f}};
+}
+
+// All numbers of an aggregate but its mask.
+inline std::array<float, 10> numbers_of(const Aggregate& a) {
+  return {a.alpha, a.plane.z, a.plane.dzdu, a.plane.dzdv, a.thickness,
+          a.z_min, a.z_max,   a.color[0],   a.color[1],   a.color[2]};
 }
 
 // What the raster stages can send, with hard cases often: specks, full pixels, single bits, planes equal to earlier

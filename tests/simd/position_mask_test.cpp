@@ -1,7 +1,5 @@
 #include "simd/position_mask.h"
 
-#include <utility>
-
 #include "simd/sample_mask.h"
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"

@@ -28,6 +28,12 @@ class Random {
     return values[static_cast<std::size_t>(integer(0, static_cast<std::int64_t>(std::size(values)) - 1))];
   }
 
+  template <class Values>
+  void shuffle(Values& values) {
+    for (std::size_t i = values.size(); i > 1; --i)
+      std::swap(values[i - 1], values[static_cast<std::size_t>(integer(0, static_cast<std::int64_t>(i) - 1))]);
+  }
+
   std::string name() const { return "seed " + std::to_string(seed_); }
 
  private:

@@ -1,7 +1,6 @@
 #include "simd/tested_cells.h"
 
 #include "tests/simd/every_target.h"
-#include "tests/simd/random.h"
 
 namespace beampipe::tested_cells_test {
 
@@ -30,32 +29,6 @@ TEST(TestedCells, HaveTheirNumberInTheTileAndTheDepthOfTheirCorner) {
       EXPECT_EQ(planes[i].z, corners[i]) << i;
       EXPECT_EQ(planes[i].dzdx, 0.0625f / 256);
       EXPECT_EQ(planes[i].dzdy, -0.125f / 256);
-    }
-  });
-}
-
-// In double precision, rounded once.
-TEST(TestedCells, AreRoundedAsByTheFormula) {
-  Random random(5);
-  on_every_target([&] {
-    for (int i = 0; i < 300; ++i) {
-      const AnchoredPlane<double> depth{random.real(-1, 0), random.real(-1, 1), random.real(-1, 1), random.real(0, 900),
-                                        random.real(0, 900)};
-      const auto count = static_cast<std::size_t>(random.integer(1, 40));
-      std::vector<std::int32_t> x(count + kTestedSlack), y(count + kTestedSlack);
-      std::vector<std::uint32_t> masks(count + kTestedSlack);
-      for (std::size_t c = 0; c < count; ++c) x[c] = random.int32(0, 4000), y[c] = random.int32(0, 4000);
-      std::vector<SampleAccess> items(count + kTestedSlack);
-      std::vector<CellPlane<float>> planes(count + kTestedSlack);
-      set_tested_cells({0, 0, 1000, 2, 3}, depth, {0, x.data(), y.data(), masks.data()}, count, items.data(),
-                       planes.data());
-      for (std::size_t c = 0; c < count; ++c) {
-        const double right = depth.dzdx * (x[c] / 4.0 - depth.anchor_x),
-                     down = depth.dzdy * (y[c] / 8.0 - depth.anchor_y);
-        const double sum = depth.z + right;
-        ASSERT_EQ(planes[c].z, static_cast<float>(sum + down)) << c;
-        ASSERT_EQ(planes[c].dzdx, static_cast<float>(depth.dzdx / 256));
-      }
     }
   });
 }

@@ -46,28 +46,4 @@ TEST(TouchedPixels, FillBlocks) {
   });
 }
 
-// The same bits also where arithmetic rounds.
-TEST(TouchedPixels, HaveTheBoundsOfTheFormulaOnEveryTarget) {
-  Random random(66);
-  on_every_target([&] {
-    for (int round = 0; round < 2'000; ++round) {
-      const double steepness = std::ldexp(1.0, static_cast<int>(random.integer(-30, 4)));
-      const AnchoredPlane<double> plane{random.real(-1, 0), random.real(-1, 1) * steepness,
-                                        random.real(-1, 1) * steepness, random.real(-99, 999), random.real(-99, 999)};
-      const float z = random.real32(-1, 0);
-      const DepthBounds<float> vertices{z, random.real32(z, 0)};
-      const PixelRow row{2 * random.int32(0, 8'000), 2 * random.int32(0, 8'000), 0, {random.bits(), 0}};
-      TouchedPixels pixels;
-      const std::size_t count = touched_pixels(&row, 1, plane, vertices, pixels);
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto centre = static_cast<float>(depth_at(plane, pixels.x[i] + 0.5, pixels.y[i] + 0.5));
-        const DepthBounds<float> expected =
-            pair_bounds<float>({centre, static_cast<float>(plane.dzdx), static_cast<float>(plane.dzdy)}, vertices);
-        ASSERT_EQ(pixels.nearest[i], expected.nearest) << round;
-        ASSERT_EQ(pixels.farthest[i], expected.farthest) << round;
-      }
-    }
-  });
-}
-
 }  // namespace beampipe::touched_pixels_test

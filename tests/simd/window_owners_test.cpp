@@ -1,10 +1,5 @@
 #include "simd/window_owners.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 

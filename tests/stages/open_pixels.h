@@ -1,8 +1,6 @@
 // Runs the stages around compose_pooled one after the other, for a tile of open pixels.
 #pragma once
 
-#include <vector>
-
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_pooled.h"
 #include "stages/raster/bin_sort.h"
@@ -22,6 +20,19 @@ std::vector<Fragment> fragments_in_order(const SetupTriangles& triangles, const 
   beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes),
                 ignored, fragments);
   return fragments;
+}
+
+inline std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& random, double least = 0,
+                                            double greatest = 1) {
+  std::vector<glm::vec3> colors;
+  for (std::size_t i = 0; i < triangles.triangles.size(); ++i)
+    colors.emplace_back(random.real32(least, greatest), random.real32(least, greatest), random.real32(least, greatest));
+  return colors;
+}
+
+inline void expect_pixel(const PixelColor& found, double alpha, const glm::dvec3& color, double tolerance) {
+  EXPECT_NEAR(found.alpha, alpha, tolerance);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.color[c], color[c], tolerance) << "channel " << c;
 }
 
 // A tile of pixels with at most so many owners each, and a pool.

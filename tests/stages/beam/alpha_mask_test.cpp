@@ -1,8 +1,6 @@
 // Cutouts and translucency of beams: how much area and which positions are left.
 #include "stages/beam/alpha_mask.h"
 
-#include <map>
-
 #include "stages/surface/opacity.h"
 #include "tests/stages/beam_pixels.h"
 #include "tests/stages/surface_scene.h"

@@ -63,35 +63,21 @@ TEST(Compose, SharedEdgeClosesThePixel) {
     }
 }
 
-// A front triangle over one that covers the whole pixel, in either order. If the front one covers k whole columns of
-// positions, its mask has the same coverage as its area, and the picture is exact.
-TEST(Compose, FrontOverBack) {
-  for (const bool front_first : {true, false})
-    for (const std::int32_t x : {64, 128, 192}) {
-      SetupTriangles triangles;
-      if (front_first) add_left_of(triangles, x, -0.75f);
-      add_everywhere(triangles, -0.25f);
-      if (!front_first) add_left_of(triangles, x, -0.75f);
-      const Aggregate found = pixel(triangles);
-      const int front = front_first ? 0 : 1;
-      EXPECT_NEAR(found.alpha, 1.0, 1e-6);
-      EXPECT_NEAR(found.color[front], x / 256.0, 1e-6);
-      EXPECT_NEAR(found.color[1 - front], 1 - x / 256.0, 1e-6);
-    }
-}
-
-// Also where the mask cannot represent the area: what a local coverage above 1 hides is taken from the positions beside
-// it.
+// A front triangle over one that covers the whole pixel, in either order, also where the mask cannot represent the
+// area: what a local coverage above 1 hides is taken from the positions beside it.
 TEST(Compose, FrontOverBackConservesArea) {
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
-    for (std::int32_t x = 1; x < 256; ++x) {
-      SetupTriangles triangles;
-      add_left_of(triangles, x, -0.75f);
-      add_everywhere(triangles, -0.25f);
-      const Aggregate found = pixel(triangles, mask);
-      ASSERT_NEAR(found.color[0], x / 256.0, 1e-6) << x;
-      ASSERT_NEAR(found.color[1], 1 - x / 256.0, 1e-6) << x;
-    }
+    for (const int front : {0, 1})
+      for (std::int32_t x = 1; x < 256; ++x) {
+        SetupTriangles triangles;
+        if (front == 0) add_left_of(triangles, x, -0.75f);
+        add_everywhere(triangles, -0.25f);
+        if (front == 1) add_left_of(triangles, x, -0.75f);
+        const Aggregate found = pixel(triangles, mask);
+        ASSERT_NEAR(found.alpha, 1.0, 1e-6) << x;
+        ASSERT_NEAR(found.color[front], x / 256.0, 1e-6) << x;
+        ASSERT_NEAR(found.color[1 - front], 1 - x / 256.0, 1e-6) << x;
+      }
 }
 
 // A wire before a quad: a sliver that narrows from 56 units at y = -30,000 to 0 at 60,000. Within the pixel its mean
@@ -302,9 +288,6 @@ TEST(Compose, PlainOver) {
   EXPECT_NEAR(found.color[0], 0.375 / 4, 1e-6);
   EXPECT_NEAR(found.alpha, 0.5 + 0.125 + 0.09375, 1e-6);
   EXPECT_EQ(counters.items_in, 3u);
-  // Per merge: 1 - alpha; a product and a sum each for alpha and three channels; the channels are converted from fp16
-  // and back.
-  EXPECT_EQ(counters.ops, (OperationCounts{.mul_add = 3 * 4, .add = 3 * 5, .convert = 3 * 6}));
 }
 
 }  // namespace beampipe::compose_casav_test

@@ -1,8 +1,4 @@
 // What compose_pooled is charged, worked out by hand: first each step, then what happens to a pixel as a sum of steps.
-#include <gtest/gtest.h>
-
-#include <utility>
-
 #include "stages/beam/compose_pooled_cost.h"
 #include "tests/stages/open_pixels.h"
 

@@ -1,8 +1,5 @@
 // Properties that a pixel in near-first order has, whatever is composed into it. BEAMPIPE_THOROUGH=N tries N times as
 // many cases.
-#include <gtest/gtest.h>
-
-#include <array>
 #include <cstdio>
 
 #include "stages/beam/owner_rules.h"
@@ -60,10 +57,7 @@ TEST(Properties, NearFirstKeepsAreaAndColour) {
   Composed composed;
   search(7'000'000, 40, [&](Random& random) {
     const SetupTriangles triangles = random_triangles(random, random.int32(1, 160));
-    std::vector<glm::vec3> colors;
-    for (std::size_t i = 0; i < triangles.triangles.size(); ++i)
-      colors.emplace_back(random.real32(kLeast, kGreatest), random.real32(kLeast, kGreatest),
-                          random.real32(kLeast, kGreatest));
+    const std::vector<glm::vec3> colors = random_colors(triangles, random, kLeast, kGreatest);
     StageCounters ignored;
     const OrderedList ordered = bin_sort(triangles, all_of(triangles), kTile, ignored);
     const std::vector<float>* watermarks = random.one_in(4) ? nullptr : &ordered.watermarks;

@@ -1,9 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 #include "stages/beam/compose_pooled.h"
 #include "stages/beam/owner_rules.h"
 #include "tests/simd/random.h"
@@ -17,22 +11,20 @@ constexpr glm::vec3 kRed{1, 0, 0}, kGreen{0, 1, 0}, kBlue{0, 0, 1};
 // error of its mask to half of 1/32 position.
 double step(int surfaces, int positions) { return surfaces * (1.0 / FixedSum::kUnits + 1.0 / 64 / positions) + 1e-6; }
 
-std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& random, float brightest = 1) {
-  std::vector<glm::vec3> colors;
-  for (std::size_t i = 0; i < triangles.triangles.size(); ++i)
-    colors.push_back(brightest * glm::vec3(random.real32(0, 1), random.real32(0, 1), random.real32(0, 1)));
-  return colors;
-}
-
 TriangleList reversed(TriangleList list) {
   std::reverse(list.begin(), list.end());
   return list;
 }
 
 TriangleList shuffled(TriangleList list, Random& random) {
-  for (std::size_t i = list.size(); i > 1; --i)
-    std::swap(list[i - 1], list[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(i) - 1))]);
+  random.shuffle(list);
   return list;
+}
+
+// The largest one, of alpha and of the colours' channels.
+double difference(const PixelColor& a, const PixelColor& b) {
+  const glm::dvec3 apart = glm::abs(glm::dvec3(a.color) - glm::dvec3(b.color));
+  return std::max({std::abs(double{a.alpha} - b.alpha), apart.r, apart.g, apart.b});
 }
 
 // The part of an upright strip that lies in the pixel: two slices whose areas add up to (x1 - x0) / 256.
@@ -41,30 +33,11 @@ void add_strip(SetupTriangles& triangles, std::int32_t x0, std::int32_t x1, floa
   add_triangle(triangles, {x0, -9'000, z}, {x1, 9'000, z}, {x0, 9'000, z});
 }
 
-void expect_pixel(const PixelColor& found, double alpha, const glm::dvec3& color, double tolerance) {
-  EXPECT_NEAR(found.alpha, alpha, tolerance);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.color[c], color[c], tolerance) << "channel " << c;
-}
-
 TEST(PooledRules, APixelWithoutFragmentsIsEmpty) {
   const SetupTriangles none;
   const std::vector<glm::vec3> colors;
   OpenTile<4, 7> tile(none, colors, {0, 0, 2, 2});
   for (const PixelColor& found : tile.compose({})) expect_pixel(found, 0, {0, 0, 0}, 0);
-}
-
-TEST(PooledRules, AnUprightEdgeHasItsExactArea) {
-  const std::vector<glm::vec3> colors{{0.5f, 1.0f, 0.25f}};
-  for (int x = 3; x <= 253; x += 5) {
-    SetupTriangles triangles;
-    add_left_of(triangles, x, -0.5f);
-    OpenTile<8, 5> tile(triangles, colors);
-    const PixelColor found = tile.compose({0}).at(0);
-    // Columns of positions are 4/256 px apart. An edge between two of them leaves the count wrong by up to 8 positions.
-    const double count = tile.fragments.at(0).mask.count();
-    const double alpha = std::clamp(1.0 * x, count - kAreaTolerance, count + kAreaTolerance) / 256;
-    expect_pixel(found, alpha, alpha * glm::dvec3(colors[0]), step(1, 256));
-  }
 }
 
 // Most triangles are within the tolerance of their count; all are after it limits them.
@@ -126,10 +99,11 @@ TEST(PooledRules, ANearSurfaceHidesAFarOne) {
       EXPECT_EQ(found.alpha, 1.0f);
       EXPECT_EQ(found.color, colors[1]);
     }
-    // The pixel is closed at the nearer depth.
-    EXPECT_TRUE(wide.closed.hides(0, 0, -0.74f));
+    EXPECT_EQ(wide.pixels.words[0].kind, PixelKind::covered);
+    EXPECT_EQ(wide.pixels.pool.peak(), 0u) << "it needs no record";
+    EXPECT_TRUE(wide.closed.hides(0, 0, -0.74f)) << "it is closed at the nearer depth";
     EXPECT_FALSE(wide.closed.hides(0, 0, -0.75f));
-    EXPECT_EQ(wide.result.shaded.size(), 1u);  // the hidden one is never shaded
+    EXPECT_EQ(wide.result.shaded.size(), 1u) << "the hidden one is never shaded";
   }
 }
 
@@ -144,7 +118,17 @@ TEST(PooledRules, AnEdgeOverASurface) {
     const double count = tile.fragments.at(list[0] == 1 ? 0 : 1).mask.count();
     ASSERT_LE(std::abs(count - 78), kColorTolerance);
     expect_pixel(found, 1, {78 / 256.0, 178 / 256.0, 0}, step(2, 256));
+    EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::open);
+    EXPECT_EQ(tile.pixels.pool.used(), 3u) << "one plane and two surfaces: 48 bytes";
+    EXPECT_EQ(tile.record_bytes.at(0), 54.0f) << "with links of two bytes";
   }
+  // A third one in front of both takes the pixel, and the record is free again.
+  add_everywhere(triangles, -0.9f);
+  const std::vector<glm::vec3> three{kGreen, kRed, kBlue};
+  OpenTile<8, 2> tile(triangles, three);
+  expect_pixel(tile.compose({0, 1, 2}).at(0), 1, kBlue, 0);
+  EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::covered);
+  EXPECT_EQ(tile.pixels.pool.used(), 0u);
 }
 
 // A partly covered pixel is not closed; a pixel that several surfaces cover together is, behind the farthest of them.
@@ -193,6 +177,7 @@ TEST(PooledRules, AThousandCoplanarLayersShowTheFirst) {
       OpenTile<8, 2> tile(triangles, colors);
       const PixelColor found = tile.compose(order).at(0);
       EXPECT_EQ(tile.merges[0], 0);
+      EXPECT_LE(tile.pixels.pool.peak(), 3u);
       EXPECT_EQ(found.color.g, 0.0f);
       EXPECT_EQ(found.color.r, found.alpha);
       EXPECT_NEAR(found.alpha, whole ? 1.0 : 130.0 / 256, whole ? 0 : step(1, 256));
@@ -265,13 +250,11 @@ TEST(PooledRules, WatermarksOnRandomTriangles) {
       if (few.merges[i] > 0 || many.merges[i] > 0) continue;
       ++pixels;
       settled_early += never.merges[i] > 0;
-      double difference = std::abs(double{found[i].alpha} - expected[i].alpha);
-      for (int c = 0; c < 3; ++c)
-        difference = std::max(difference, std::abs(double{found[i].color[c]} - expected[i].color[c]));
+      const double apart = difference(found[i], expected[i]);
       if (never.merges[i] == 0) {
-        EXPECT_EQ(difference, 0) << i;
+        EXPECT_EQ(apart, 0) << i;
       }
-      worst = std::max(worst, difference), sum += difference;
+      worst = std::max(worst, apart), sum += apart;
     }
   }
   EXPECT_GT(settled_early, 100);
@@ -341,9 +324,8 @@ TEST(PooledRules, TheMeanOfManyMergedSurfacesIsTheirMean) {
     Random random(346);
     SCOPED_TRACE(random.name());
     std::vector<int> cells(256);
-    for (int i = 0; i < 256; ++i) cells[static_cast<std::size_t>(i)] = i;
-    for (std::size_t i = cells.size(); i > 1; --i)
-      std::swap(cells[i - 1], cells[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(i) - 1))]);
+    std::iota(cells.begin(), cells.end(), 0);
+    random.shuffle(cells);
     SetupTriangles triangles;
     std::vector<glm::vec3> colors;
     double mean = 0;
@@ -497,12 +479,11 @@ TEST(PooledRules, TenThousandRandomFragmentsInOnePixel) {
       add_triangle(triangles, point(), point(), point());
     }
     constexpr float kBrightest = 7.5f;
-    const std::vector<glm::vec3> colors = random_colors(triangles, random, kBrightest);
+    const std::vector<glm::vec3> colors = random_colors(triangles, random, 0, kBrightest);
     const auto check = [&](auto&& tile, const PixelColor& found) {
       WideMask all;
       for (const Fragment& fragment : tile.fragments) all = all | fragment.mask;
       constexpr double kRounding = 1e-5;
-      EXPECT_GT(tile.merges[0], 0);
       EXPECT_GE(found.alpha, 0.0f);
       EXPECT_LE(found.alpha, 1.0f);
       EXPECT_NEAR(found.alpha * 256, all.count(), kAreaTolerance + kRounding);
@@ -513,10 +494,15 @@ TEST(PooledRules, TenThousandRandomFragmentsInOnePixel) {
       }
       EXPECT_EQ(tile.composing.items_in, tile.fragments.size());
     };
-    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}), sorted(triangles, colors, {0, 0, 1, 1});
+    OpenTile<8, 5> unsorted(triangles, colors), sorted(triangles, colors);
     check(unsorted, unsorted.compose(all_of(triangles)).at(0));
     EXPECT_GT(unsorted.fragments.size(), 5000u);
     check(sorted, sorted.compose_sorted().at(0));
+    EXPECT_TRUE(unsorted.merges[0] > 0 && sorted.merges[0] > 0);
+    // Watermarks and a pool of the least size: collections all the time.
+    OpenTile<8> collecting(triangles, colors, {0, 0, 1, 1}, ChunkPool(0));
+    check(collecting, collecting.compose_sorted().at(0));
+    EXPECT_LE(collecting.pixels.pool.peak(), 26u) << "a record of 30 surfaces";
   }
 }
 
@@ -537,9 +523,7 @@ TEST(PooledRules, TheOrderOfArrivalDoesNotMatterWhileSlotsSuffice) {
         return fragment.pixel == i && fragment.mask.none();
       });
       ASSERT_EQ(one.merges[i] + other.merges[i], 0);
-      if (specks) continue;
-      worst = std::max(worst, std::abs(double{found[i].alpha} - expected[i].alpha));
-      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(double{found[i].color[c]} - expected[i].color[c]));
+      if (!specks) worst = std::max(worst, difference(found[i], expected[i]));
     }
   }
   EXPECT_LT(worst, 1e-4);  // three units of FixedSum

@@ -1,9 +1,5 @@
 #include "stages/beam/compose_pooled.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
 #include "tests/stages/surface_scene.h"
@@ -11,70 +7,6 @@
 namespace beampipe::compose_pooled_test {
 
 constexpr glm::vec3 kRed{1, 0, 0}, kGreen{0, 1, 0};
-
-void expect_pixel(const PixelColor& found, double alpha, const glm::dvec3& color, double tolerance) {
-  EXPECT_NEAR(found.alpha, alpha, tolerance);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.color[c], color[c], tolerance) << "channel " << c;
-}
-
-std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& random) {
-  std::vector<glm::vec3> colors;
-  for (std::size_t i = 0; i < triangles.triangles.size(); ++i)
-    colors.emplace_back(random.real32(0, 1), random.real32(0, 1), random.real32(0, 1));
-  return colors;
-}
-
-TEST(ComposePooled, APixelThatOneTriangleCoversHasNoRecord) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_everywhere(triangles, -0.75f);
-  const std::vector<glm::vec3> colors{kGreen, {0.3f, 0.7f, 0.1f}};
-  for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
-    OpenTile<8> tile(triangles, colors);
-    const PixelColor found = tile.compose(list).at(0);
-    EXPECT_EQ(found.alpha, 1.0f);
-    EXPECT_EQ(found.color, colors[1]);
-    EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::covered);
-    EXPECT_EQ(tile.pixels.pool.peak(), 0u);
-    EXPECT_EQ(tile.result.shaded.size(), 1u) << "the hidden one is never shaded";
-    EXPECT_TRUE(tile.closed.hides(0, 0, -0.74f));
-    EXPECT_FALSE(tile.closed.hides(0, 0, -0.75f));
-  }
-}
-
-TEST(ComposePooled, AnEdgeOverASurface) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_left_of(triangles, 128, -0.75f);
-  const std::vector<glm::vec3> colors{kRed, kGreen};
-  for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
-    OpenTile<8> tile(triangles, colors);
-    expect_pixel(tile.compose(list).at(0), 1, {0.5, 0.5, 0}, 1e-7);
-    EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::open);
-    EXPECT_EQ(tile.pixels.pool.used(), 3u) << "one plane and two surfaces: 48 bytes";
-    EXPECT_EQ(tile.record_bytes.at(0), 54.0f) << "with links of two bytes";
-  }
-  // A third one in front of both takes the pixel, and the record is free again.
-  add_everywhere(triangles, -0.9f);
-  const std::vector<glm::vec3> three{kRed, kGreen, {0, 0, 1}};
-  OpenTile<8> tile(triangles, three);
-  expect_pixel(tile.compose({0, 1, 2}).at(0), 1, {0, 0, 1}, 0);
-  EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::covered);
-  EXPECT_EQ(tile.pixels.pool.used(), 0u);
-}
-
-TEST(ComposePooled, AtEqualDepthTheFirstTriangleWins) {
-  SetupTriangles triangles;
-  for (int i = 0; i < 1000; ++i) add_everywhere(triangles, -0.5f);
-  Random random(411);
-  const std::vector<glm::vec3> colors = random_colors(triangles, random);
-  TriangleList list = all_of(triangles);
-  for (int turn = 0; turn < 2; ++turn, std::reverse(list.begin(), list.end())) {
-    OpenTile<8> tile(triangles, colors);
-    EXPECT_EQ(tile.compose(list).at(0).color, colors[0]);
-    EXPECT_LE(tile.pixels.pool.peak(), 3u);
-  }
-}
 
 // Where a record lies changes nothing.
 TEST(ComposePooled, RecordsInMemoryAreThoseOfThePool) {
@@ -93,30 +25,6 @@ TEST(ComposePooled, RecordsInMemoryAreThoseOfThePool) {
     }
     EXPECT_GT(no_pool.result.spills.all(), 0u);
     EXPECT_EQ(pooled.result.spills.all(), 0u);
-  }
-}
-
-// Watermarks and a pool of the least size: collections all the time. 10,000 layers that reach into each other.
-TEST(ComposePooled, ManyLayersTakeNoMoreMemoryThanFew) {
-  for (const std::uint64_t seed : {451, 452}) {
-    Random random(seed);
-    SCOPED_TRACE(random.name());
-    SetupTriangles triangles;
-    while (triangles.triangles.size() < 10'000) {
-      const std::int32_t x = random.int32(0, 255), y = random.int32(0, 255);
-      const auto point = [&] {
-        return ScreenPoint{x + random.int32(-200, 200), y + random.int32(-200, 200), random.real32(-1, 0)};
-      };
-      add_triangle(triangles, point(), point(), point());
-    }
-    const std::vector<glm::vec3> colors = random_colors(triangles, random);
-    OpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, ChunkPool(0));
-    const PixelColor found = tile.compose_sorted().at(0);
-    WideMask all;
-    for (const Fragment& fragment : tile.fragments) all = all | fragment.mask;
-    EXPECT_NEAR(found.alpha * 256, all.count(), 2 + 1e-4);
-    for (int c = 0; c < 3; ++c) EXPECT_TRUE(found.color[c] >= 0 && found.color[c] <= found.alpha * 1.00001f);
-    EXPECT_LE(tile.pixels.pool.peak(), 26u) << "a record of 30 surfaces";
   }
 }
 

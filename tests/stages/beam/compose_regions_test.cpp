@@ -3,11 +3,6 @@
 
 #include "stages/beam/compose_regions.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
 
@@ -23,13 +18,16 @@ RopRule without_depth() {
   rule.depth = Compare::always, rule.writes_depth = false;
   return rule;
 }
-RopRule blending(const BlendEquation& equation) {
+RopRule over() {
   RopRule rule = without_depth();
-  rule.blend = Blend{equation, {}, {}};
+  rule.blend = Blend{{BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha, BlendOperation::add}, {}, {}};
   return rule;
 }
-RopRule over() {
-  return blending({BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha, BlendOperation::add});
+// With the same stencil for both faces, and always passing the depth test.
+RopRule marking(const Stencil& stencil) {
+  RopRule rule = without_depth();
+  rule.has_stencil = true, rule.stencil = {stencil, stencil};
+  return rule;
 }
 
 // Draws in the API's order into the pixel (0, 0).
@@ -166,29 +164,6 @@ TEST(Regions, AreasBehindAnEdgeAddUp) {
   expect_partition(pixel.regions);
 }
 
-TEST(Regions, EachDepthFunctionComparesWithWhatIsStored) {
-  struct Case {
-    Compare function;
-    bool nearer, same, farther;
-  };
-  for (const Case& c : {Case{Compare::never, false, false, false}, Case{Compare::less, true, false, false},
-                        Case{Compare::equal, false, true, false}, Case{Compare::less_equal, true, true, false},
-                        Case{Compare::greater, false, false, true}, Case{Compare::not_equal, true, false, true},
-                        Case{Compare::greater_equal, false, true, true}, Case{Compare::always, true, true, true}}) {
-    const auto is_drawn = [&](float z) {
-      OnePixel pixel;
-      pixel.everywhere(plain(), kRed, -0.5f);
-      RopRule rule;
-      rule.depth = c.function;
-      pixel.everywhere(rule, kGreen, z);
-      return pixel.compose().g == 1.0f;
-    };
-    EXPECT_EQ(is_drawn(-0.75f), c.nearer) << static_cast<int>(c.function);
-    EXPECT_EQ(is_drawn(-0.5f), c.same) << static_cast<int>(c.function);
-    EXPECT_EQ(is_drawn(-0.25f), c.farther) << static_cast<int>(c.function);
-  }
-}
-
 // From depth -0.75 on the left to -0.25 on the right side of the pixel.
 void add_crossing(OnePixel& pixel) {
   pixel.triangle({-1024, -1024, -2.75f}, {2048, -1024, 3.25f}, {-1024, 2048, -2.75f});
@@ -220,17 +195,6 @@ TEST(Regions, PositionsThatFailTheDepthTestTakeItsStencilOperation) {
   for (const Region& region : pixel.regions) EXPECT_EQ(region.stencil, region.color[1] == 1 ? 5 : 6);
 }
 
-TEST(Regions, DepthIsWrittenWhereTheDrawSaysSo) {
-  for (const bool writes : {false, true}) {
-    OnePixel pixel;
-    RopRule first;
-    first.writes_depth = writes;
-    pixel.everywhere(first, kRed, -0.75f);
-    pixel.everywhere(plain(), kGreen, -0.5f);
-    EXPECT_EQ(pixel.compose().g, writes ? 0.0f : 1.0f);
-  }
-}
-
 // Beyond the far plane depth is limited to it, where nothing is nearer than what is cleared to it.
 TEST(Regions, DepthsAreLimitedToTheRange) {
   OnePixel pixel;
@@ -244,142 +208,16 @@ TEST(Regions, DepthsAreLimitedToTheRange) {
   EXPECT_EQ(other.compose(), kRed) << "what lies on the far plane is not nearer than what was limited to it";
 }
 
-TEST(Regions, ClearsSetDepthAndStencil) {
-  OnePixel pixel;
-  pixel.everywhere(plain(), kRed, -0.75f);
-  pixel.clear_before_next({}, true);
-  pixel.everywhere(plain(), kGreen, -0.5f);
-  pixel.clear_before_next(7u);
-  RopRule rule = without_depth();
-  rule.has_stencil = true;
-  rule.stencil[0].function = rule.stencil[1].function = Compare::equal;
-  rule.stencil[0].reference = rule.stencil[1].reference = 7;
-  pixel.everywhere(rule, kBlue, -0.25f);
-  EXPECT_EQ(pixel.compose(), kBlue);
-}
-
-TEST(Regions, EachStencilOperationChangesWhatIsStored) {
-  struct Case {
-    StencilOperation operation;
-    std::uint32_t before, after;
-  };
-  using enum StencilOperation;
-  for (const Case& c : {Case{keep, 5, 5}, Case{zero, 5, 0}, Case{replace, 5, 9}, Case{increment, 5, 6},
-                        Case{increment, 255, 255}, Case{decrement, 5, 4}, Case{decrement, 0, 0}, Case{invert, 5, 250},
-                        Case{increment_wrap, 255, 0}, Case{decrement_wrap, 0, 255}}) {
-    for (const char* when : {"fail", "depth_fail", "pass"}) {
-      OnePixel pixel;
-      pixel.everywhere(plain(), kRed, -0.75f);
-      pixel.clear_before_next(c.before);
-      RopRule rule;
-      rule.has_stencil = true;
-      Stencil stencil;
-      stencil.reference = 9;
-      const std::string event = when;
-      (event == "fail" ? stencil.fail : event == "pass" ? stencil.pass : stencil.depth_fail) = c.operation;
-      if (event == "fail") stencil.function = Compare::never;
-      rule.stencil = {stencil, stencil};
-      rule.color_mask = 0;
-      pixel.everywhere(rule, kGreen, event == "pass" ? -0.875f : -0.5f);
-      EXPECT_EQ(pixel.compose(), kRed);
-      ASSERT_EQ(pixel.regions.size(), 1u);
-      EXPECT_EQ(pixel.regions[0].stencil, c.after) << static_cast<int>(c.operation) << " " << when;
-    }
-  }
-}
-
-TEST(Regions, StencilMasksLimitWhatIsComparedAndWritten) {
-  OnePixel pixel;
-  pixel.clear_before_next(0x35u);
-  RopRule rule = without_depth();
-  rule.has_stencil = true;
-  Stencil stencil;
-  stencil.function = Compare::equal;
-  stencil.reference = 0xf5;
-  stencil.mask = 0x0f;
-  stencil.write_mask = 0xf0;
-  stencil.pass = StencilOperation::replace;
-  rule.stencil = {stencil, stencil};
-  pixel.everywhere(rule, kRed);
-  EXPECT_EQ(pixel.compose(), kRed);
-  EXPECT_EQ(pixel.regions.at(0).stencil, 0xf5);  // the lower half stays, the upper half is the reference's
-}
-
 // A window that one draw opens and another looks through.
 TEST(Regions, StencilCutsOutWhatItMarks) {
   OnePixel pixel;
-  RopRule mark = without_depth();
-  mark.has_stencil = true, mark.color_mask = 0;
-  mark.stencil[0].pass = mark.stencil[1].pass = StencilOperation::replace;
-  mark.stencil[0].reference = mark.stencil[1].reference = 1;
+  RopRule mark = marking({.reference = 1, .pass = StencilOperation::replace});
+  mark.color_mask = 0;
   pixel.begin(mark, kRed);
   pixel.left_of(100);
-  RopRule look = without_depth();
-  look.has_stencil = true;
-  look.stencil[0].function = look.stencil[1].function = Compare::equal;
-  look.stencil[0].reference = look.stencil[1].reference = 1;
-  pixel.everywhere(look, kBlue);
+  pixel.everywhere(marking({.function = Compare::equal, .reference = 1}), kBlue);
   const double area = 100 / 256.0;
   expect_color(pixel.compose(), area * glm::dvec3(kBlue) + (1 - area) * glm::dvec3(kClear), 2 * kAreaStep);
-}
-
-TEST(Regions, FacesHaveStencilsOfTheirOwn) {
-  for (const bool is_front : {false, true}) {
-    for (const bool front_is_clockwise : {false, true}) {
-      OnePixel pixel;
-      RopRule rule = without_depth();
-      rule.has_stencil = true;
-      rule.front_is_clockwise = front_is_clockwise;
-      rule.stencil[0].pass = rule.stencil[1].pass = StencilOperation::replace;
-      rule.stencil[0].reference = 10, rule.stencil[1].reference = 20;
-      pixel.everywhere(rule, kRed);
-      if (is_front) pixel.turn_last_over();
-      pixel.compose();
-      EXPECT_EQ(pixel.regions.at(0).stencil, is_front != front_is_clockwise ? 10 : 20);
-    }
-  }
-}
-
-// (0.5, 0.25, 1, 0.75) over (0.25, 0.5, 0.125, 0.5).
-TEST(Regions, EachBlendOperationIsThatOfTheApi) {
-  struct Case {
-    BlendEquation equation;
-    glm::dvec3 expected;
-  };
-  using enum BlendFactor;
-  using enum BlendOperation;
-  const glm::vec4 source{0.5f, 0.25f, 1.0f, 0.75f};
-  for (const Case& c :
-       {Case{{one, one, add}, {0.75, 0.75, 1.125}},
-        Case{{source_alpha, one_minus_source_alpha, add}, {0.4375, 0.3125, 0.78125}},
-        Case{{one, one, subtract}, {0.25, -0.25, 0.875}}, Case{{one, one, reverse_subtract}, {-0.25, 0.25, -0.875}},
-        Case{{one, one, min}, {0.25, 0.25, 0.125}}, Case{{one, one, max}, {0.5, 0.5, 1}},
-        Case{{destination_color, zero, add}, {0.125, 0.125, 0.125}},
-        Case{{zero, source_color, add}, {0.125, 0.125, 0.125}},
-        Case{{destination_alpha, one_minus_destination_alpha, add}, {0.375, 0.375, 0.5625}},
-        Case{{source_alpha_saturate, one, add}, {0.5, 0.625, 0.625}}}) {
-    OnePixel pixel;
-    pixel.everywhere(blending(c.equation), source);
-    expect_color(pixel.compose(), c.expected);
-  }
-}
-
-TEST(Regions, AlphaHasAnEquationAndAStoreOfItsOwn) {
-  OnePixel pixel;
-  RopRule rule = over();
-  rule.blend->alpha = BlendEquation{BlendFactor::one, BlendFactor::one, BlendOperation::add};
-  pixel.everywhere(rule, {1, 0, 0, 0.25f});
-  expect_color(pixel.compose(), {0.4375, 0.375, 0.09375});
-  EXPECT_EQ(pixel.regions.at(0).color.a, 0.75f);  // 0.5 of the clear and 0.25
-}
-
-TEST(Regions, ColourMasksKeepChannels) {
-  OnePixel pixel;
-  RopRule rule = plain();
-  rule.color_mask = kGreenChannel | kAlphaChannel;
-  pixel.everywhere(rule, {1, 1, 1, 0.125f});
-  expect_color(pixel.compose(), {0.25, 1, 0.125}, 0);
-  EXPECT_EQ(pixel.regions.at(0).color.a, 0.125f);
 }
 
 // A fan around a hub inside the pixel covers all of it, in as many triangles as it has. Blended once, it is one
@@ -550,14 +388,9 @@ TEST(Regions, TooManyRegionsBecomeOneOfThoseThatAreAlike) {
 // The two that differ least in colour have different stencil values, so two others become one.
 TEST(Regions, MergesKeepStencilValuesApart) {
   OnePixel pixel;
-  RopRule rule = without_depth();
-  rule.has_stencil = true;
   for (int strip = 0; strip < 17; ++strip) {
-    for (Stencil& stencil : rule.stencil) {
-      stencil.pass = StencilOperation::replace;
-      stencil.reference = strip == 12 ? 1 : 0;
-    }
-    pixel.begin(rule, glm::vec4(glm::vec3(gray(strip)), 1));
+    pixel.begin(marking({.reference = strip == 12 ? 1u : 0u, .pass = StencilOperation::replace}),
+                glm::vec4(glm::vec3(gray(strip)), 1));
     pixel.right_of(15 * strip);
   }
   pixel.compose();
@@ -609,6 +442,7 @@ RopRule random_rule(Random& random) {
   rule.depth = any(Compare::always);
   rule.writes_depth = random.one_in(2);
   rule.has_stencil = random.one_in(2);
+  rule.front_is_clockwise = random.one_in(2);
   for (Stencil& stencil : rule.stencil) {
     stencil.function = any(Compare::always);
     stencil.reference = static_cast<std::uint32_t>(random.int32(0, 3));
@@ -713,7 +547,7 @@ TEST(Regions, DrawsOfWholePixelsAreExact) {
       pixel.everywhere(rule, color, z);
       const bool turned = random.one_in(2);
       if (turned) pixel.turn_last_over();
-      sample.take(rule, turned, z, color);
+      sample.take(rule, turned != rule.front_is_clockwise, z, color);
       for (int c = 0; c < 4; ++c) largest = std::max(largest, std::abs(sample.color[c]));
     }
     if (largest > 100) continue;
