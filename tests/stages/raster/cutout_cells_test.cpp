@@ -1,8 +1,6 @@
 // The reference takes a cutout's samples where alpha at each of them says so, though it does not ask at each of them.
 #include "stages/raster/cutout_cells.h"
 
-#include <array>
-
 #include "stages/raster/reference_raster.h"
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"

@@ -1,8 +1,5 @@
 #include "stages/raster/reference_raster.h"
 
-#include <cmath>
-#include <set>
-
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe::reference_raster_test {

@@ -111,8 +111,7 @@ TEST(ReferenceSurfaces, TranslucentLayersMultiplyInAnyOrder) {
     if (round % 2) colors[4].a = 1;
     std::vector<std::size_t> order(kLayers);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    for (std::size_t i = kLayers - 1; i > 0; --i)
-      std::swap(order[i], order[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(i)))]);
+    random.shuffle(order);
     SurfaceTrace scene(3, 3);
     scene.frame().background = glm::vec3(0.25f, 0.5f, 0.75f);
     for (const std::size_t layer : order)

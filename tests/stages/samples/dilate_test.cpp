@@ -77,13 +77,6 @@ TEST(Dilate, CountsWhatItLooksAt) {
   const std::uint64_t neighbors = 4 * 3 + 8 * 5 + 4 * 8;  // corners, sides, inside
   EXPECT_EQ(counters.bytes_read, 16 * (6 + 4 + 4) + neighbors * (6 + 4));
   EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));
-  // Per pixel: four masks, the sum of their counts, a division, twelve means of four values, to fp16. Per neighbour:
-  // the test whether it belongs to the same draw, then a selection and a minimum or maximum for four channels.
-  const OperationCounts pixel{.mul_add = 12 * 5, .add = 3 + 12 * 3, .bit = 4 + 4, .special = 1, .convert = 4 + 3 + 12},
-      neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
-  OperationCounts all = pixel * 16;
-  all += neighbor * neighbors;
-  EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.items_in, 16u);
   EXPECT_EQ(counters.items_out, 16u);
   EXPECT_EQ(counters.lanes_used, 0u) << "nothing is known";
@@ -96,12 +89,6 @@ TEST(Dilate, CountsWhatItLooksAt) {
   counters = {};
   dilate({quads, kDraws, kBackground, 1}, {0, 0, 4, 4}, counters, frame);
   EXPECT_EQ(counters.bytes_read - without.bytes_read, 14u + 4 * (6 + 4) + 3 * 4);
-  // Each of the quad's four pixels has another mask and count, one more in their sum, and a term more in twelve means.
-  const OperationCounts term{.mul_add = 12, .add = 1 + 12, .bit = 2, .convert = 1};
-  all += term * 4;
-  all += neighbor * 4;
-  all.convert += 3;
-  EXPECT_EQ(counters.ops, all);
 }
 
 }  // namespace beampipe::dilate_test

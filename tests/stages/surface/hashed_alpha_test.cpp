@@ -1,10 +1,6 @@
 // Thresholds of hashed alpha.
 #include "stages/surface/hashed_alpha.h"
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "tests/simd/random.h"
 #include "tests/test.h"
 

@@ -45,6 +45,19 @@ std::vector<glm::vec2> vectors(const SampleTile& surface, const Frame& now, cons
 
 const glm::dmat4 kIdentity(1.0);
 
+// Where a point was that is now at (x, y) from the frame's middle, y up.
+template <class Before>
+void expect_moved(const std::vector<glm::vec2>& found, Before&& before) {
+  ASSERT_EQ(found.size(), kTile.pixels());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double x = static_cast<double>(i % kSize) + 0.5 - kSize / 2,
+                 y = kSize / 2 - static_cast<double>(i / kSize) - 0.5;
+    const glm::dvec2 was = before(i, glm::dvec2(x, y));
+    EXPECT_NEAR(found[i].x, was.x - x, kHalf * kSize) << i;
+    EXPECT_NEAR(found[i].y, y - was.y, kHalf * kSize) << i;  // y is down
+  }
+}
+
 TEST(Motion, WhatStandsStillDoesNotMove) {
   const Frame frame = flat_frame(glm::rotate(kIdentity, 0.3, glm::dvec3(0, 0, 1)));
   for (const glm::vec2& v : vectors(full_surface(-0.5f), frame, frame)) EXPECT_EQ(v, glm::vec2(0));
@@ -60,15 +73,8 @@ TEST(Motion, PointsBackAlongADrawsRotation) {
   const glm::dvec3 middle(kSize / 2, kSize / 2, 0);
   const glm::dmat4 turn = glm::translate(kIdentity, middle) * glm::rotate(kIdentity, std::acos(0.0), {0, 0, 1}) *
                           glm::translate(kIdentity, -middle);
-  const std::vector<glm::vec2> found = vectors(full_surface(-0.5f), flat_frame(turn), flat_frame(kIdentity));
-  for (std::int32_t row = 0; row < kSize; ++row) {
-    for (std::int32_t column = 0; column < kSize; ++column) {
-      const double x = column + 0.5 - kSize / 2, up = kSize / 2 - row - 0.5;
-      const glm::vec2 v = found[static_cast<std::size_t>(row * kSize + column)];
-      EXPECT_NEAR(v.x, up - x, kHalf * kSize);
-      EXPECT_NEAR(v.y, -(-x - up), kHalf * kSize);
-    }
-  }
+  expect_moved(vectors(full_surface(-0.5f), flat_frame(turn), flat_frame(kIdentity)),
+               [](std::size_t, const glm::dvec2& now) { return glm::dvec2(now.y, -now.x); });
 }
 
 TEST(Motion, FollowsTheCameraByDepth) {
@@ -80,12 +86,8 @@ TEST(Motion, FollowsTheCameraByDepth) {
   const glm::dvec4 clip = now.projection * glm::dvec4(0, 0, -10, 1);
   SampleTile surface = full_surface(static_cast<float>((clip.z / clip.w - 1) / 2));
   surface.triangle[3] = kNoTriangle, surface.depth[3] = kFarDepth;
-  const std::vector<glm::vec2> found = vectors(surface, now, before);
-  for (std::int32_t column = 0; column < kSize; ++column) {
-    const double x = column + 0.5 - kSize / 2;
-    const double scale = column == 3 ? 100.0 / 102 : 10.0 / 12;
-    EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * scale - x, kHalf * kSize) << column;
-  }
+  expect_moved(vectors(surface, now, before),
+               [](std::size_t i, const glm::dvec2& at) { return at * (i == 3 ? 100.0 / 102 : 10.0 / 12); });
   // The camera moves backward by 20: the surface was behind the eye.
   before.view = glm::translate(kIdentity, glm::dvec3(0, 0, 20));
   EXPECT_EQ(vectors(surface, now, before)[0].x, std::numeric_limits<float>::infinity());
@@ -129,14 +131,9 @@ TEST(Motion, FollowsVerticesThatAllMoveAlike) {
 TEST(Motion, FollowsATriangleThatGrows) {
   // Twice as large about the lower left corner of the frame: a point at (x, y), y up, was at half of both.
   const std::vector<glm::vec3> before = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, now = {{0, 0, 0}, {16, 0, 0}, {0, 16, 0}};
-  const std::vector<glm::vec2> found = Deformed(flat_frame(kIdentity), before, now).vectors();
-  for (std::int32_t row = 0; row < kSize; ++row)
-    for (std::int32_t column = 0; column < kSize; ++column) {
-      const double x = column + 0.5, up = kSize - row - 0.5;
-      const glm::vec2 v = found[static_cast<std::size_t>(row * kSize + column)];
-      EXPECT_NEAR(v.x, -x / 2, kHalf * kSize);
-      EXPECT_NEAR(v.y, up / 2, kHalf * kSize);
-    }
+  const double middle = kSize / 2;
+  expect_moved(Deformed(flat_frame(kIdentity), before, now).vectors(),
+               [&](std::size_t, const glm::dvec2& at) { return (at + middle) / 2.0 - middle; });
 }
 
 TEST(Motion, FollowsVerticesInPerspective) {
@@ -144,11 +141,8 @@ TEST(Motion, FollowsVerticesInPerspective) {
   // FollowsTheCameraByDepth.
   const std::vector<glm::vec3> before = {{-3, -3, -12}, {5, -2, -12}, {0, 4, -12}},
                                now = {{-3, -3, -10}, {5, -2, -10}, {0, 4, -10}};
-  const std::vector<glm::vec2> found = Deformed(perspective_frame(), before, now).vectors();
-  for (std::int32_t column = 0; column < kSize; ++column) {
-    const double x = column + 0.5 - kSize / 2;
-    EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * 10 / 12 - x, kHalf * kSize) << column;
-  }
+  expect_moved(Deformed(perspective_frame(), before, now).vectors(),
+               [](std::size_t, const glm::dvec2& at) { return at * (10.0 / 12); });
   std::vector<glm::vec3> behind = before;
   for (glm::vec3& at : behind) at.z = 12;
   EXPECT_EQ(Deformed(perspective_frame(), behind, now).vectors()[0].x, std::numeric_limits<float>::infinity());
@@ -223,18 +217,14 @@ TEST(Motion, FollowsPlacedDepths) {
         DrawPlacement{.depth_scale = 0.375, .depth_offset = -1.5},
         DrawPlacement{.depth_scale = 0.375, .depth_offset = 0.9375}}) {
     const auto placed = static_cast<float>(placement.depth_scale * depth + placement.depth_offset);
-    const std::vector<glm::vec2> found = placed_vectors(full_surface(placed), now, before, placement);
-    for (std::int32_t column = 0; column < kSize; ++column) {
-      const double x = column + 0.5 - kSize / 2;
-      EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * 10 / 12 - x, kHalf * kSize) << column;
-    }
+    expect_moved(placed_vectors(full_surface(placed), now, before, placement),
+                 [](std::size_t, const glm::dvec2& at) { return at * (10.0 / 12); });
   }
   // Painted behind: at the far plane. In front: at the near plane, 1 in front of the camera, and 3 before.
   for (const bool in_front : {false, true}) {
     const DrawPlacement painted{.depth_scale = 0, .depth_offset = in_front ? -1.5 : 0.5, .layer_step = 0.25};
-    const std::vector<glm::vec2> found = placed_vectors(full_surface(in_front ? -1.5f : 0.5f), now, before, painted);
-    const double x = 0.5 - kSize / 2, scale = in_front ? 1.0 / 3 : 100.0 / 102;
-    EXPECT_NEAR(found[0].x, x * scale - x, kHalf * kSize) << in_front;
+    expect_moved(placed_vectors(full_surface(in_front ? -1.5f : 0.5f), now, before, painted),
+                 [&](std::size_t, const glm::dvec2& at) { return at * (in_front ? 1.0 / 3 : 100.0 / 102); });
   }
 }
 
@@ -331,42 +321,31 @@ TEST(Motion, DrawsAreKnownByIndexAndMesh) {
   EXPECT_EQ(vectors(full_surface(-0.5f), now, before)[0], glm::vec2(-1, 0));
 }
 
-TEST(Motion, CountsItsArithmetic) {
+// TemporalTwins count operations.
+TEST(Motion, CountsWhatItReadsAndWrites) {
   const Frame frame = flat_frame(kIdentity);
-  StageCounters counters;
-  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}),
-         {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, counters);
-  // Seven comparisons and selections find the nearest of 8 samples. To this frame's clip space: x and y (multiplied,
-  // divided, minus one) and the depth. Then three rows of a matrix, a division, two coordinates to pixels, the
-  // difference, the test whether it is in front of the eye, and the conversions to float and fp16.
-  const OperationCounts pixel{
-      .mul_add = 0 + 3 + 9 + 2 * 3, .add = 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, .fetch = 2, .special = 2 + 1, .convert = 4};
-  EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
-  EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
-  EXPECT_EQ(counters.bytes_written, kSize * kSize * 4u);
-  EXPECT_EQ(counters.items_in, kSize * kSize * 8u);
-  EXPECT_EQ(counters.items_out, kSize * kSize * 1u);
-  EXPECT_EQ(counters.lanes_used, kSize * kSize * 1u);
-  EXPECT_EQ(counters.lanes_issued, kSize * kSize * 1u);
+  const SampleTile surface = full_surface(-0.5f, {CellGrid{}, standard_pattern(8)});
+  const std::vector<std::uint32_t> draws = {0};
+  const std::vector<glm::dmat4> to_last = to_last_frame(poses_of(frame), poses_of(frame));
+  const MovingTile in{kTile, frame, draws, to_last};
+  constexpr std::uint64_t kPixels = kSize * kSize;
+  StageCounters counters, without_ids, of_contents;
+  motion(surface, in, counters);
+  EXPECT_EQ(counters.bytes_read, kPixels * (8 * 4 + 4));
+  EXPECT_EQ(counters.bytes_written, kPixels * 4);
+  EXPECT_EQ(counters.items_in, kPixels * 8);
+  EXPECT_EQ(counters.items_out, kPixels);
+  EXPECT_EQ(counters.lanes_used, kPixels);
+  EXPECT_EQ(counters.lanes_issued, kPixels);
   // Without ids, neither the draw nor its matrix is fetched.
-  counters = {};
-  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}),
-         {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, counters, MotionFrom::depth);
-  OperationCounts without_ids = pixel;
-  without_ids.fetch = 0;
-  EXPECT_EQ(counters.ops, without_ids * (kSize * kSize));
-  EXPECT_EQ(counters.bytes_read, kSize * kSize * 8 * 4u);
-  counters = {};
-  contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}),
-           {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, looks_of(frame), counters);
-  // The draws of eight samples are compared in 28 pairs. Then a root, to fp16. For the one draw: its look, its matrix,
-  // the motion, its square and the maximum.
-  const OperationCounts set{.add = 28, .fetch = 8, .special = 1, .convert = 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
-  OperationCounts all = set * (kSize * kSize);
-  all += draw * (kSize * kSize);
-  EXPECT_EQ(counters.ops, all);
-  EXPECT_EQ(counters.bytes_read, kSize * kSize * 8 * 4);
-  EXPECT_EQ(counters.bytes_written, kSize * kSize * (4 + 2));
+  motion(surface, in, without_ids, MotionFrom::depth);
+  OperationCounts fetched = without_ids.ops;
+  fetched.fetch += 2 * kPixels;
+  EXPECT_EQ(fetched, counters.ops);
+  EXPECT_EQ(without_ids.bytes_read, kPixels * 8 * 4);
+  contents(surface, in, looks_of(frame), of_contents);
+  EXPECT_EQ(of_contents.bytes_read, kPixels * 8 * 4);
+  EXPECT_EQ(of_contents.bytes_written, kPixels * (4 + 2));
 }
 
 }  // namespace beampipe::motion_test
