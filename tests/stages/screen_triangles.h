@@ -1,11 +1,6 @@
 // Makes setup triangles from screen positions, without vertex_setup.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 #include "tests/simd/random.h"

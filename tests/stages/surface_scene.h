@@ -1,8 +1,6 @@
 // Traces of rectangles with materials, and all that a stage needs to shade them.
 #pragma once
 
-#include <vector>
-
 #include "stages/geometry/vertex_setup.h"
 #include "stages/surface/sheets.h"
 #include "stages/surface/surface_shader.h"

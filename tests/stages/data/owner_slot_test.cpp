@@ -1,11 +1,5 @@
 #include "stages/data/owner_slot.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "stages/data/pixel_sums.h"
 #include "stages/data/position_states.h"
 #include "tests/simd/random.h"

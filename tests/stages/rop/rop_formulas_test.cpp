@@ -1,8 +1,6 @@
 // Tests and blending, as the tables of OpenGL 4.6 (17.3.3 to 17.3.6) have them.
 #include "stages/rop/rop_formulas.h"
 
-#include <array>
-
 #include "stages/cost/counting.h"
 #include "tests/test.h"
 

@@ -1,17 +1,11 @@
 // Fragment shaders from SPIR-V's assembly language, and runs of them on numbers.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstdint>
-#include <random>
 #include <spirv-tools/libspirv.hpp>
-#include <string>
-#include <vector>
 
 #include "stages/spirv/fragment_shader.h"
 #include "stages/spirv/shader_executor.h"
+#include "tests/test.h"
 
 namespace beampipe {
 
