@@ -2,15 +2,10 @@
 
 #include <vulkan/vulkan.h>
 
-#include <algorithm>
-#include <bit>
-#include <cstdlib>
-#include <cstring>
-#include <functional>
 #include <spirv-tools/libspirv.hpp>
-#include <stdexcept>
 
 #include "stages/spirv/module.h"
+#include "tests/test.h"
 
 namespace beampipe {
 namespace {
@@ -24,38 +19,27 @@ void check(VkResult result, const char* what) {
 
 // The name of its enumerator, which VkFormat has too.
 VkFormat format_of(TexelFormat format) {
+#define BEAMPIPE_SAME_NAME(name) \
+  case TexelFormat::name:        \
+    return VK_FORMAT_##name;
   switch (format) {
-    case TexelFormat::R8_UNORM:
-      return VK_FORMAT_R8_UNORM;
-    case TexelFormat::R8G8_UNORM:
-      return VK_FORMAT_R8G8_UNORM;
-    case TexelFormat::R8G8B8A8_UNORM:
-      return VK_FORMAT_R8G8B8A8_UNORM;
-    case TexelFormat::R8G8B8A8_SRGB:
-      return VK_FORMAT_R8G8B8A8_SRGB;
-    case TexelFormat::B8G8R8A8_UNORM:
-      return VK_FORMAT_B8G8R8A8_UNORM;
-    case TexelFormat::B8G8R8A8_SRGB:
-      return VK_FORMAT_B8G8R8A8_SRGB;
-    case TexelFormat::R16_SFLOAT:
-      return VK_FORMAT_R16_SFLOAT;
-    case TexelFormat::R16G16_SFLOAT:
-      return VK_FORMAT_R16G16_SFLOAT;
-    case TexelFormat::R16G16B16A16_SFLOAT:
-      return VK_FORMAT_R16G16B16A16_SFLOAT;
-    case TexelFormat::R16G16B16A16_UNORM:
-      return VK_FORMAT_R16G16B16A16_UNORM;
-    case TexelFormat::R32_SFLOAT:
-      return VK_FORMAT_R32_SFLOAT;
-    case TexelFormat::R32G32B32A32_SFLOAT:
-      return VK_FORMAT_R32G32B32A32_SFLOAT;
-    case TexelFormat::R32G32B32A32_UINT:
-      return VK_FORMAT_R32G32B32A32_UINT;
-    case TexelFormat::R32G32B32A32_SINT:
-      return VK_FORMAT_R32G32B32A32_SINT;
-    case TexelFormat::D32_SFLOAT:
-      return VK_FORMAT_D32_SFLOAT;
+    BEAMPIPE_SAME_NAME(R8_UNORM)
+    BEAMPIPE_SAME_NAME(R8G8_UNORM)
+    BEAMPIPE_SAME_NAME(R8G8B8A8_UNORM)
+    BEAMPIPE_SAME_NAME(R8G8B8A8_SRGB)
+    BEAMPIPE_SAME_NAME(B8G8R8A8_UNORM)
+    BEAMPIPE_SAME_NAME(B8G8R8A8_SRGB)
+    BEAMPIPE_SAME_NAME(R16_SFLOAT)
+    BEAMPIPE_SAME_NAME(R16G16_SFLOAT)
+    BEAMPIPE_SAME_NAME(R16G16B16A16_SFLOAT)
+    BEAMPIPE_SAME_NAME(R16G16B16A16_UNORM)
+    BEAMPIPE_SAME_NAME(R32_SFLOAT)
+    BEAMPIPE_SAME_NAME(R32G32B32A32_SFLOAT)
+    BEAMPIPE_SAME_NAME(R32G32B32A32_UINT)
+    BEAMPIPE_SAME_NAME(R32G32B32A32_SINT)
+    BEAMPIPE_SAME_NAME(D32_SFLOAT)
   }
+#undef BEAMPIPE_SAME_NAME
   return VK_FORMAT_UNDEFINED;
 }
 
@@ -253,9 +237,7 @@ class DriverRun {
   DriverRun(const LavapipeDriver& driver, const ShaderCase& shader)
       : device_(driver.device_), queue_(driver.queue_), shader_(shader) {
     const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    VkCommandPool pool = nullptr;
-    check(vkCreateCommandPool(device_, &pool_info, nullptr, &pool), "vkCreateCommandPool");
-    at_end([this, pool] { vkDestroyCommandPool(device_, pool, nullptr); });
+    const VkCommandPool pool = created(&vkCreateCommandPool, &vkDestroyCommandPool, pool_info, "vkCreateCommandPool");
     const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                            .commandPool = pool,
                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
@@ -274,19 +256,25 @@ class DriverRun {
  private:
   void at_end(std::function<void()> end) { ends_.push_back(std::move(end)); }
 
+  // A Vulkan object, which is destroyed at the end. `what`: the function that creates it.
+  template <class Handle, class Info>
+  Handle created(VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, Handle*),
+                 void (*destroy)(VkDevice, Handle, const VkAllocationCallbacks*), const Info& info, const char* what) {
+    Handle handle = nullptr;
+    check(create(device_, &info, nullptr, &handle), what);
+    at_end([this, destroy, handle] { destroy(device_, handle, nullptr); });
+    return handle;
+  }
+
   VkDeviceMemory memory_of(const VkMemoryRequirements& needs) {  // all memory of the driver is the host's
     const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size};
-    VkDeviceMemory memory = nullptr;
-    check(vkAllocateMemory(device_, &info, nullptr, &memory), "vkAllocateMemory");
-    at_end([this, memory] { vkFreeMemory(device_, memory, nullptr); });
-    return memory;
+    return created(&vkAllocateMemory, &vkFreeMemory, info, "vkAllocateMemory");
   }
 
   MappedBuffer buffer_of(VkDeviceSize size, VkBufferUsageFlags usage, const void* bytes = nullptr) {
     MappedBuffer made{.size = size};
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
-    check(vkCreateBuffer(device_, &info, nullptr, &made.buffer), "vkCreateBuffer");
-    at_end([this, buffer = made.buffer] { vkDestroyBuffer(device_, buffer, nullptr); });
+    made.buffer = created(&vkCreateBuffer, &vkDestroyBuffer, info, "vkCreateBuffer");
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device_, made.buffer, &needs);
     const VkDeviceMemory memory = memory_of(needs);
@@ -303,9 +291,7 @@ class DriverRun {
 
   VkImage image_of(VkImageCreateInfo info) {
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, info.samples = VK_SAMPLE_COUNT_1_BIT;
-    VkImage image = nullptr;
-    check(vkCreateImage(device_, &info, nullptr, &image), "vkCreateImage");
-    at_end([this, image] { vkDestroyImage(device_, image, nullptr); });
+    const VkImage image = created(&vkCreateImage, &vkDestroyImage, info, "vkCreateImage");
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device_, image, &needs);
     check(vkBindImageMemory(device_, image, memory_of(needs), 0), "vkBindImageMemory");
@@ -314,20 +300,14 @@ class DriverRun {
 
   VkImageView view_of(VkImageViewCreateInfo info) {
     info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    VkImageView view = nullptr;
-    check(vkCreateImageView(device_, &info, nullptr, &view), "vkCreateImageView");
-    at_end([this, view] { vkDestroyImageView(device_, view, nullptr); });
-    return view;
+    return created(&vkCreateImageView, &vkDestroyImageView, info, "vkCreateImageView");
   }
 
   VkShaderModule module_of(const std::vector<std::uint32_t>& words) {
     const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                         .codeSize = words.size() * sizeof(std::uint32_t),
                                         .pCode = words.data()};
-    VkShaderModule module = nullptr;
-    check(vkCreateShaderModule(device_, &info, nullptr, &module), "vkCreateShaderModule");
-    at_end([this, module] { vkDestroyShaderModule(device_, module, nullptr); });
-    return module;
+    return created(&vkCreateShaderModule, &vkDestroyShaderModule, info, "vkCreateShaderModule");
   }
 
   void move_image(VkImage image, VkImageAspectFlags aspect, VkImageLayout to) {
@@ -346,7 +326,6 @@ class DriverRun {
   VkImageView texture(const ProgramImage& image, const BoundImage& bound, const Slot& slot);
   VkSampler sampler_of(const ProgramSampler& sampler);
   void write_descriptors(const Slots& slots, const std::vector<VkDescriptorSet>& sets);
-  void bind_vertices(const VkPipelineVertexInputStateCreateInfo& state, std::vector<MappedBuffer>& buffers);
 
   VkDevice device_;
   VkQueue queue_;
@@ -419,10 +398,7 @@ VkSampler DriverRun::sampler_of(const ProgramSampler& sampler) {
       .maxLod = sampler.most_lod,
       .borderColor = VK_BORDER_COLOR_FLOAT_CUSTOM_EXT,
       .unnormalizedCoordinates = sampler.unnormalized};
-  VkSampler made = nullptr;
-  check(vkCreateSampler(device_, &info, nullptr, &made), "vkCreateSampler");
-  at_end([this, made] { vkDestroySampler(device_, made, nullptr); });
-  return made;
+  return created(&vkCreateSampler, &vkDestroySampler, info, "vkCreateSampler");
 }
 
 void DriverRun::write_descriptors(const Slots& slots, const std::vector<VkDescriptorSet>& sets) {
@@ -451,8 +427,7 @@ void DriverRun::write_descriptors(const Slots& slots, const std::vector<VkDescri
                                             .buffer = made.buffer,
                                             .format = format_of(texels.format),
                                             .range = VK_WHOLE_SIZE};
-          check(vkCreateBufferView(device_, &info, nullptr, &buffer_view), "vkCreateBufferView");
-          at_end([this, buffer_view] { vkDestroyBufferView(device_, buffer_view, nullptr); });
+          buffer_view = created(&vkCreateBufferView, &vkDestroyBufferView, info, "vkCreateBufferView");
           break;
         }
         case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
@@ -504,8 +479,8 @@ CaseOutputs DriverRun::run(const std::set<std::uint32_t>& floats, const std::set
     const VkDescriptorSetLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                                .bindingCount = static_cast<std::uint32_t>(bindings.size()),
                                                .pBindings = bindings.data()};
-    check(vkCreateDescriptorSetLayout(device_, &info, nullptr, &set_layouts[set]), "vkCreateDescriptorSetLayout");
-    at_end([this, layout = set_layouts[set]] { vkDestroyDescriptorSetLayout(device_, layout, nullptr); });
+    set_layouts[set] =
+        created(&vkCreateDescriptorSetLayout, &vkDestroyDescriptorSetLayout, info, "vkCreateDescriptorSetLayout");
   }
   constexpr std::uint32_t kPushBytes = 256;
   const VkPushConstantRange push{VK_SHADER_STAGE_FRAGMENT_BIT, 0, kPushBytes};
@@ -514,9 +489,8 @@ CaseOutputs DriverRun::run(const std::set<std::uint32_t>& floats, const std::set
                                                .pSetLayouts = set_layouts.data(),
                                                .pushConstantRangeCount = 1,
                                                .pPushConstantRanges = &push};
-  VkPipelineLayout layout = nullptr;
-  check(vkCreatePipelineLayout(device_, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
-  at_end([this, layout] { vkDestroyPipelineLayout(device_, layout, nullptr); });
+  const VkPipelineLayout layout =
+      created(&vkCreatePipelineLayout, &vkDestroyPipelineLayout, layout_info, "vkCreatePipelineLayout");
   std::vector<VkDescriptorSet> sets(set_count);
   if (set_count > 0) {
     std::vector<VkDescriptorPoolSize> sizes;
@@ -525,9 +499,8 @@ CaseOutputs DriverRun::run(const std::set<std::uint32_t>& floats, const std::set
                                           .maxSets = set_count,
                                           .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                           .pPoolSizes = sizes.data()};
-    VkDescriptorPool pool = nullptr;
-    check(vkCreateDescriptorPool(device_, &info, nullptr, &pool), "vkCreateDescriptorPool");
-    at_end([this, pool] { vkDestroyDescriptorPool(device_, pool, nullptr); });
+    const VkDescriptorPool pool =
+        created(&vkCreateDescriptorPool, &vkDestroyDescriptorPool, info, "vkCreateDescriptorPool");
     const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                                .descriptorPool = pool,
                                                .descriptorSetCount = set_count,

@@ -1,13 +1,6 @@
 // What the tests share: the driver, and cases of random numbers.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <random>
-#include <string>
-
 #include "tests/lavapipe/executor_run.h"
 #include "tests/stages/spirv/shader_text.h"
 

@@ -243,8 +243,7 @@ TEST_F(LavapipeShaders, BuffersAndPushConstants) {
     const std::string stride = storage == "Uniform" ? "16" : "8";
     ShaderCase shader = points(
         {.body = R"(
-%k0 = OpCompositeExtract %uint %vi 0
-%element = OpBitwiseAnd %uint %k0 %u3_
+%element = OpBitwiseAnd %uint %vi0 %u3_
 %p = OpAccessChain %to_float %buffer %i1 %element %i1
 %x = OpLoad %float %p
 %q = OpAccessChain %to_m23 %buffer %i2_
@@ -319,8 +318,7 @@ TEST_F(LavapipeShaders, LocalArrays) {
       R"(
 %list = OpVariable %to_list Function
 ; begin
-%k0 = OpCompositeExtract %uint %vi 0
-%k1 = OpBitwiseAnd %uint %k0 %u3_
+%k1 = OpBitwiseAnd %uint %vi0 %u3_
 %k2 = OpCompositeExtract %uint %vj 0
 %k3 = OpBitwiseAnd %uint %k2 %u3_
 %p0 = OpAccessChain %to_v4 %list %i0
@@ -345,8 +343,7 @@ OpStore %one %f2
 // A loop with two ways out of which lanes take different ones, a switch that falls through, and a discard.
 TEST_F(LavapipeShaders, Flow) {
   const std::string body = R"(
-%k0 = OpCompositeExtract %uint %vi 0
-%most = OpBitwiseAnd %uint %k0 %u15
+%most = OpBitwiseAnd %uint %vi0 %u15
 %limit = OpCompositeExtract %float %va 0
 OpBranch %header
 %header = OpLabel
@@ -402,14 +399,13 @@ OpKill
 %end = OpLabel
 OpBranch %kept
 %kept = OpLabel
-%r = OpCompositeConstruct %v4 %result %result %b0 %f1
-%counts = OpCompositeConstruct %u4 %count %most %u0 %u1
-OpStore %out %r
-OpStore %iout %counts
 )";
-  const std::string globals = "%u15 = OpConstant %uint 15\n%half_ = OpConstant %float 0.5\n";
-  expect_near(points({.body = body, .globals = globals}), "points");
-  expect_near(triangle({.body = body, .globals = globals}), "triangle");
+  const ShaderParts parts{.body = body,
+                          .floats = "%result %result %b0 %f1",
+                          .integers = "%count %most %u0 %u1",
+                          .globals = "%u15 = OpConstant %uint 15\n%half_ = OpConstant %float 0.5\n"};
+  expect_near(points(parts), "points");
+  expect_near(triangle(parts), "triangle");
 }
 
 TEST_F(LavapipeShaders, Functions) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/simd/clipped_polygon.h"
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe {
@@ -20,19 +21,10 @@ using Polygon = std::vector<glm::dvec4>;
 
 Polygon clip_to_view(const ClipTriangle& clip) {
   Polygon polygon(clip.begin(), clip.end());
-  for (const auto& plane : kViewVolume) {
-    const auto distance = [&](const glm::dvec4& p) {
-      return plane[0] * p.x + plane[1] * p.y + plane[2] * p.z + plane[3] * p.w;
-    };
-    Polygon inside;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const glm::dvec4 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-      const double before = distance(from), after = distance(to);
-      if (before >= 0) inside.push_back(from);
-      if ((before >= 0) != (after >= 0)) inside.push_back(glm::mix(from, to, before / (before - after)));
-    }
-    polygon = inside;
-  }
+  for (const auto& plane : kViewVolume)
+    polygon = clipped_polygon(
+        polygon, [&](const glm::dvec4& p) { return plane[0] * p.x + plane[1] * p.y + plane[2] * p.z + plane[3] * p.w; },
+        [](const glm::dvec4& from, const glm::dvec4& to, double t) { return glm::mix(from, to, t); });
   return polygon;
 }
 

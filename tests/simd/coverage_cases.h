@@ -3,6 +3,7 @@
 
 #include "simd/coverage.h"
 #include "simd/depth_range.h"
+#include "tests/simd/clipped_polygon.h"
 #include "tests/simd/random.h"
 
 namespace beampipe {
@@ -77,7 +78,7 @@ inline DepthRangeInput<float> depth_range_input(const Triangle& t) {
   return in;
 }
 
-// Polygon clipping (Sutherland and Hodgman 1974). It has nothing in common with the formula's sums over edges.
+// By polygon clipping, which has nothing in common with the formula's sums over edges.
 struct Point {
   double u, v;
 };
@@ -85,21 +86,15 @@ struct Point {
 inline std::vector<Point> clipped_to_pixel(const Triangle& t) {
   std::vector<Point> polygon;
   for (const Corner& corner : t.p) polygon.push_back({double(corner.x) / 256, double(corner.y) / 256});
-  for (int side = 0; side < 4; ++side) {
-    const auto inside_by = [&](const Point& p) {
-      return side == 0 ? p.u : side == 1 ? 1 - p.u : side == 2 ? p.v : 1 - p.v;
-    };
-    std::vector<Point> kept;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Point from = polygon[i], to = polygon[(i + 1) % polygon.size()];
-      const double d_from = inside_by(from), d_to = inside_by(to);
-      if (d_from >= 0) kept.push_back(from);
-      if ((d_from >= 0) == (d_to >= 0)) continue;
-      const double s = d_from / (d_from - d_to);
-      kept.push_back({from.u + s * (to.u - from.u), from.v + s * (to.v - from.v)});
-    }
-    polygon = std::move(kept);
-  }
+  for (int side = 0; side < 4; ++side)
+    polygon = clipped_polygon(
+        polygon, [&](const Point& p) { return side == 0   ? p.u
+                                              : side == 1 ? 1 - p.u
+                                              : side == 2 ? p.v
+                                                          : 1 - p.v; },
+        [](const Point& from, const Point& to, double part) {
+          return Point{from.u + part * (to.u - from.u), from.v + part * (to.v - from.v)};
+        });
   return polygon;
 }
 

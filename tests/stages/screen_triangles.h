@@ -33,15 +33,32 @@ inline void add_triangle(SetupTriangles& triangles, const ScreenPoint& p, Screen
   triangles.attributes.push_back({glm::vec3(1.0f), glm::vec3(0.0f), false});
 }
 
+// Is the sample at (x, y), in 1 / (256 units) px, in the triangle? One on an edge counts as if it lay a little further
+// to the right, and even less further down. Then no sample lies on any edge.
+inline bool covers(const SetupTriangle& t, std::int64_t x, std::int64_t y, std::int64_t units = 1) {
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t px = t.x[k], py = t.y[k], qx = t.x[(k + 1) % 3], qy = t.y[(k + 1) % 3];
+    const std::int64_t value = (qx - px) * (y - units * py) - (x - units * px) * (qy - py);
+    if (std::tuple(value, py - qy, qx - px) < std::tuple(0, 0, 0)) return false;
+  }
+  return true;
+}
+
+struct ScreenTriangle {
+  ScreenPoint p, q, r;
+};
+
 // Upright edges through the pixels of rows -30 to 30, which contain the tiles of all tests.
-inline void add_left_of(SetupTriangles& triangles, std::int32_t x, float z) {
-  add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {-9'000, 0, z});
-}
-inline void add_right_of(SetupTriangles& triangles, std::int32_t x, float z) {
-  add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {9'000, 0, z});
-}
-inline void add_everywhere(SetupTriangles& triangles, float z) {
-  add_triangle(triangles, {-9'000, -9'000, z}, {20'000, -9'000, z}, {-9'000, 20'000, z});
+inline ScreenTriangle left_of(std::int32_t x, float z) { return {{x, -9'000, z}, {x, 9'000, z}, {-9'000, 0, z}}; }
+inline ScreenTriangle right_of(std::int32_t x, float z) { return {{x, -9'000, z}, {x, 9'000, z}, {9'000, 0, z}}; }
+inline ScreenTriangle everywhere(float z) { return {{-9'000, -9'000, z}, {20'000, -9'000, z}, {-9'000, 20'000, z}}; }
+
+inline void add_triangle(SetupTriangles& triangles, const ScreenTriangle& t) { add_triangle(triangles, t.p, t.q, t.r); }
+
+inline SetupTriangles triangles_of(std::initializer_list<ScreenTriangle> list) {
+  SetupTriangles triangles;
+  for (const ScreenTriangle& each : list) add_triangle(triangles, each);
+  return triangles;
 }
 
 inline TriangleList all_of(const SetupTriangles& triangles) {

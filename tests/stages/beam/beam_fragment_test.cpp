@@ -9,8 +9,7 @@ constexpr MaskSource kBoth[] = {MaskSource::table, MaskSource::exact};
 
 // The left quarter of the pixel contains columns 0..7 of the Hammersley pattern, whose bits are sorted by x.
 TEST(BeamFragment, OneEdge) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {64, -5'000}, {64, 5'000}, {-5'000, 0});
+  SetupTriangles triangles = triangles_of({{{64, -5'000}, {64, 5'000}, {-5'000, 0}}});
   for (const MaskSource source : kBoth) {
     const Fragments fragments = beam_fragments(triangles, kPixel, source);
     ASSERT_EQ(fragments.list.size(), 1u);
@@ -25,8 +24,8 @@ TEST(BeamFragment, OneEdge) {
 }
 
 TEST(BeamFragment, FullPixel) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {-5'000, -5'000, -0.75f}, {20'000, -5'000, -0.75f}, {-5'000, 20'000, -0.25f});
+  SetupTriangles triangles =
+      triangles_of({{{-5'000, -5'000, -0.75f}, {20'000, -5'000, -0.75f}, {-5'000, 20'000, -0.25f}}});
   for (const MaskSource source : kBoth) {
     const Fragments fragments = beam_fragments(triangles, kPixel, source);
     ASSERT_EQ(fragments.list.size(), 1u);
@@ -46,8 +45,7 @@ TEST(BeamFragment, FullPixel) {
 
 // Between the positions (4, 4) and (12, 132), at (8, 30): 26.3 units from the first, 102 from the second.
 TEST(BeamFragment, TinyTriangleTakesThePositionNearestToItsCentroid) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {7, 29}, {10, 30}, {7, 31});
+  SetupTriangles triangles = triangles_of({{{7, 29}, {10, 30}, {7, 31}}});
   for (const MaskSource source : kBoth) {
     const Fragments fragments = beam_fragments(triangles, kPixel, source);
     ASSERT_EQ(fragments.list.size(), 1u);
@@ -86,8 +84,7 @@ TEST(BeamFragment, TinyTrianglesAreGivenTheNearestPositions) {
 
 // The triangle fills the lower right quarter of four pixels and only touches the others along its borders.
 TEST(BeamFragment, TouchedPixelsWithoutAreaAreDroppedAndCounted) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {256, 256}, {512, 256}, {256, 512});
+  SetupTriangles triangles = triangles_of({{{256, 256}, {512, 256}, {256, 512}}});
   const Fragments fragments = beam_fragments(triangles, {0, 0, 4, 4}, MaskSource::table);
   ASSERT_EQ(fragments.list.size(), 1u);
   EXPECT_EQ(fragments.list[0].pixel, 1u * 4 + 1);

@@ -58,9 +58,8 @@ TEST(VisibleArea, StaysBetweenNothingAndWhatIsFree) {
 
 TEST(ComposeWindow, AnEdgeOverASurfaceSplitsThePixelExactly) {
   for (const int bits : {32, 256}) {
-    SetupTriangles triangles;
-    add_left_of(triangles, 77, -0.75f);  // the left 77/256 of the pixel
-    add_everywhere(triangles, -0.5f);
+    SetupTriangles triangles = triangles_of({left_of(77, -0.75f),  // the left 77/256 of the pixel
+                                             everywhere(-0.5f)});
     const PixelColor found = composed(triangles, {{1, 0, 0}, {0, 1, 0}}, kPixel, bits).at(0);
     EXPECT_NEAR(found.alpha, 1.0, 1e-6);
     EXPECT_NEAR(found.color.r, 77.0 / 256, 1e-6) << bits;
@@ -69,9 +68,7 @@ TEST(ComposeWindow, AnEdgeOverASurfaceSplitsThePixelExactly) {
 }
 
 TEST(ComposeWindow, ColorIsStoredAsHalfBehindEveryWindow) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 77, -0.75f);
-  add_everywhere(triangles, -0.5f);
+  SetupTriangles triangles = triangles_of({left_of(77, -0.75f), everywhere(-0.5f)});
   const std::vector<glm::vec3> colors = {{0.7f, 0, 0}, {0.1f, 0, 0}};
   const float first = HalfBits(77.0f / 256 * 0.7f);
   EXPECT_EQ(composed(triangles, colors, kPixel, 256).at(0).color.r, HalfBits(first + 179.0f / 256 * 0.1f));
@@ -90,7 +87,7 @@ TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {
     add_triangle(triangles, {128, 120, -0.75f}, rim[i], rim[(i + 1) % rim.size()]);
     colors.emplace_back(1, 0, 0);
   }
-  add_everywhere(triangles, -0.5f);
+  add_triangle(triangles, everywhere(-0.5f));
   colors.emplace_back(0, 1, 0);
   const PixelColor found = composed(triangles, colors, kPixel, 256).at(0);
   EXPECT_NEAR(found.color.r, 1.0, 2e-6);
@@ -149,7 +146,7 @@ TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
   Random random(72);
   const Tile tile{0, 0, 16, 16};
   SetupTriangles triangles = random_triangles(random, 600);
-  add_everywhere(triangles, -0.01f);
+  add_triangle(triangles, everywhere(-0.01f));
   const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1));
   for (const PixelColor& pixel : composed(triangles, white, tile, 256)) {
     ASSERT_NEAR(pixel.alpha, 1.0, 1e-5);
@@ -160,15 +157,12 @@ TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
 
 TEST(ComposeWindow, EqualDepthKeepsTheEarlier) {
   SetupTriangles triangles;
-  for (int i = 0; i < 3; ++i) add_everywhere(triangles, -0.5f);
+  for (int i = 0; i < 3; ++i) add_triangle(triangles, everywhere(-0.5f));
   EXPECT_EQ(composed(triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kPixel, 256).at(0).color, glm::vec3(1, 0, 0));
 }
 
 TEST(ComposeWindow, WindowsSeparateWhatDoesNotOverlapInDepth) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 100, -0.75f);
-  add_left_of(triangles, 150, -0.5f);
-  add_everywhere(triangles, -0.25f);
+  SetupTriangles triangles = triangles_of({left_of(100, -0.75f), left_of(150, -0.5f), everywhere(-0.25f)});
   std::vector<float> windows;
   composed(triangles, std::vector<glm::vec3>(3, glm::vec3(1)), kPixel, 256, &windows);
   EXPECT_EQ(windows, std::vector<float>{1});
@@ -179,7 +173,7 @@ TEST(ComposeWindow, ClosedPixelsHideNothingThatIsSeen) {
   Random random(74);
   const Tile tile{0, 0, 16, 16};
   SetupTriangles front = random_triangles(random, 200);
-  add_everywhere(front, -0.6f);
+  add_triangle(front, everywhere(-0.6f));
   SetupTriangles all = front;
   const SetupTriangles behind = random_triangles(random, 200);
   const auto first_behind = static_cast<std::uint32_t>(all.triangles.size());

@@ -23,8 +23,7 @@ TEST(Compose, EmptyPixel) {
 TEST(Compose, OneEdge) {
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
     for (const std::int32_t x : {1, 37, 64, 128, 200, 255}) {  // only the area matters, not the mask
-      SetupTriangles triangles;
-      add_left_of(triangles, x, -0.5f);
+      SetupTriangles triangles = triangles_of({left_of(x, -0.5f)});
       const Aggregate found = pixel(triangles, mask);
       EXPECT_NEAR(found.alpha, x / 256.0, 1e-6);
       EXPECT_NEAR(found.color[0], x / 256.0, 1e-6);
@@ -32,17 +31,14 @@ TEST(Compose, OneEdge) {
 }
 
 TEST(Compose, TwoEdgesOfOneTriangle) {  // the lower left quarter: the right angle is at the pixel's centre
-  SetupTriangles triangles;
-  add_triangle(triangles, {128, 128}, {128, 9'000}, {-9'000, 128});
+  SetupTriangles triangles = triangles_of({{{128, 128}, {128, 9'000}, {-9'000, 128}}});
   EXPECT_NEAR(pixel(triangles).alpha, 0.25, 1e-6);
 }
 
 TEST(Compose, TwoDisjointEdgesAdd) {
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
     for (const float z : {-0.75f, -0.25f}) {
-      SetupTriangles triangles;
-      add_left_of(triangles, 64, -0.5f);
-      add_right_of(triangles, 160, z);
+      SetupTriangles triangles = triangles_of({left_of(64, -0.5f), right_of(160, z)});
       const Aggregate found = pixel(triangles, mask);
       EXPECT_NEAR(found.alpha, 64 / 256.0 + 96 / 256.0, 1e-6);
       EXPECT_NEAR(found.color[0], 64 / 256.0, 1e-6);
@@ -53,9 +49,7 @@ TEST(Compose, TwoDisjointEdgesAdd) {
 TEST(Compose, SharedEdgeClosesThePixel) {
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
     for (const std::int32_t x : {16, 100, 128, 131, 250}) {
-      SetupTriangles triangles;
-      add_left_of(triangles, x, -0.5f);
-      add_right_of(triangles, x, -0.5f);
+      SetupTriangles triangles = triangles_of({left_of(x, -0.5f), right_of(x, -0.5f)});
       const Aggregate found = pixel(triangles, mask);
       EXPECT_NEAR(found.alpha, 1.0, 1e-6);
       EXPECT_NEAR(found.color[0], x / 256.0, 1e-6);
@@ -70,9 +64,9 @@ TEST(Compose, FrontOverBackConservesArea) {
     for (const int front : {0, 1})
       for (std::int32_t x = 1; x < 256; ++x) {
         SetupTriangles triangles;
-        if (front == 0) add_left_of(triangles, x, -0.75f);
-        add_everywhere(triangles, -0.25f);
-        if (front == 1) add_left_of(triangles, x, -0.75f);
+        if (front == 0) add_triangle(triangles, left_of(x, -0.75f));
+        add_triangle(triangles, everywhere(-0.25f));
+        if (front == 1) add_triangle(triangles, left_of(x, -0.75f));
         const Aggregate found = pixel(triangles, mask);
         ASSERT_NEAR(found.alpha, 1.0, 1e-6) << x;
         ASSERT_NEAR(found.color[front], x / 256.0, 1e-6) << x;
@@ -86,9 +80,8 @@ TEST(Compose, WireBeforeAQuad) {
   const double area = 56.0 * (60'000 - 128) / 90'000 / 256;
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
     for (std::int32_t x = 0; x <= 200; x += 5) {
-      SetupTriangles triangles;
-      add_triangle(triangles, {x, -30'000, -0.75f}, {x, 60'000, -0.75f}, {x + 56, -30'000, -0.75f});
-      add_everywhere(triangles, -0.25f);
+      SetupTriangles triangles =
+          triangles_of({{{x, -30'000, -0.75f}, {x, 60'000, -0.75f}, {x + 56, -30'000, -0.75f}}, everywhere(-0.25f)});
       const Aggregate found = pixel(triangles, mask);
       ASSERT_NEAR(found.color[0], area, 2 * kRounding) << x;
       ASSERT_NEAR(found.color[1], 1 - area, 2 * kRounding) << x;
@@ -105,7 +98,7 @@ TEST(Compose, NothingShinesThroughASharedEdge) {
         const ScreenPoint low{x - lean, -9'872}, high{x + lean, 10'128};
         add_triangle(triangles, low, high, {-20'000, 128});
         add_triangle(triangles, high, low, {20'000, 128});
-        add_everywhere(triangles, -0.25f);
+        add_triangle(triangles, everywhere(-0.25f));
         const Aggregate found = beam_pixels(triangles, kRedGreenBlue, kPixel, mask).at(0);
         ASSERT_NEAR(found.color[0] + found.color[1], 1.0, 2 * kRounding) << x << ", " << lean;
         ASSERT_NEAR(found.color[2], 0.0, 1e-6) << x << ", " << lean;
@@ -134,7 +127,7 @@ TEST(Compose, ThirtyTwoTrianglesWithAPositionEachCloseThePixel) {
   SetupTriangles triangles = grid_of_32(true);
   std::vector<glm::vec3> colors(32, glm::vec3(0, 0, 0));
   for (std::size_t i = 0; i < 32; ++i) colors[i] = {static_cast<float>(i), 1, 0};
-  add_everywhere(triangles, -0.25f);
+  add_triangle(triangles, everywhere(-0.25f));
   colors.emplace_back(0, 0, 1);
   const Aggregate found = beam_pixels(triangles, colors, kPixel, MaskSource::exact).at(0);
   EXPECT_NEAR(found.color[0], 31 * 32 / 2 / 32.0, 1e-4);
@@ -159,9 +152,9 @@ TEST(Compose, KeptDepthsResolveSurfacesThatCross) {
     const auto slope = [](std::int32_t x, std::int32_t y) {
       return ScreenPoint{x, y, -0.5f + 1e-5f * static_cast<float>(x - 128)};
     };
-    if (!slope_first) add_everywhere(triangles, -0.5f);
+    if (!slope_first) add_triangle(triangles, everywhere(-0.5f));
     add_triangle(triangles, slope(-9'000, -9'000), slope(20'000, -9'000), slope(-9'000, 20'000));
-    if (slope_first) add_everywhere(triangles, -0.5f);
+    if (slope_first) add_triangle(triangles, everywhere(-0.5f));
     const Aggregate found =
         beam_pixels(triangles, kRedGreen, kPixel, MaskSource::exact, {.partition = MergeRules::Partition::given}).at(0);
     EXPECT_NEAR(found.alpha, 1, 1e-6);
@@ -172,9 +165,7 @@ TEST(Compose, KeptDepthsResolveSurfacesThatCross) {
 
 // A depth is compared at each position of each fragment: 32 of a surface that fills the pixel, 16 of half a pixel.
 TEST(Compose, KeptDepthsAreTestedWhereFragmentsHavePositions) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.75f);
-  add_left_of(triangles, 128, -0.5f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.75f), left_of(128, -0.5f)});
   Fragments fragments = beam_fragments(triangles, kPixel, MaskSource::exact);
   shade(kRedGreen, fragments.list, fragments.counters);
   const MergePositions positions(hammersley_pattern());
@@ -190,9 +181,7 @@ TEST(Compose, KeptDepthsAreTestedWhereFragmentsHavePositions) {
 }
 
 TEST(Compose, EqualDepthKeepsTheEarlier) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.5f);
-  add_everywhere(triangles, -0.5f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.5f), everywhere(-0.5f)});
   for (const auto partition : {MergeRules::Partition::positions, MergeRules::Partition::given}) {
     const Aggregate found =
         beam_pixels(triangles, kRedGreen, kPixel, MaskSource::exact, {.partition = partition}).at(0);
@@ -275,10 +264,7 @@ TEST(Compose, PixelsDoNotMix) {
 // From near to far the coverages are 1/2, 1/4 and 1/4, all independent: 1/2, 1/4 of the remaining 1/2, and 1/4 of the
 // remaining 3/8.
 TEST(Compose, PlainOver) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 64, -0.25f);
-  add_left_of(triangles, 128, -0.75f);
-  add_right_of(triangles, 192, -0.5f);
+  SetupTriangles triangles = triangles_of({left_of(64, -0.25f), left_of(128, -0.75f), right_of(192, -0.5f)});
   Fragments fragments = beam_fragments(triangles, kPixel, MaskSource::table);
   StageCounters shading, counters;
   shade(std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, fragments.list, shading);

@@ -292,16 +292,16 @@ void expect_charges(const std::vector<Happening>& happenings, NewTile&& new_tile
 }
 
 TEST(PooledCosts, SurfacesOfAPixel) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_left_of(triangles, 128, -0.75f);
-  add_right_of(triangles, 192, -0.8f);
-  add_everywhere(triangles, -0.9f);
-  add_triangle(triangles, {50, 50, -0.84f}, {56, 50, -0.84f}, {50, 56, -0.84f});  // a speck
-  add_right_of(triangles, 128, -0.85f);
-  add_triangle(triangles, {128, -20'000, -0.25f}, {10'128, 20'000, -0.15f}, {-9'872, 20'000, -0.35f});  // slanted
-  add_left_of(triangles, 128, -0.25f);
-  add_left_of(triangles, 128, -0.88f);
+  SetupTriangles triangles =
+      triangles_of({everywhere(-0.25f),
+                    left_of(128, -0.75f),
+                    right_of(192, -0.8f),
+                    everywhere(-0.9f),
+                    {{50, 50, -0.84f}, {56, 50, -0.84f}, {50, 56, -0.84f}},  // a speck
+                    right_of(128, -0.85f),
+                    {{128, -20'000, -0.25f}, {10'128, 20'000, -0.15f}, {-9'872, 20'000, -0.35f}},  // slanted
+                    left_of(128, -0.25f),
+                    left_of(128, -0.88f)});
   const std::vector<glm::vec3> colors(9, kRed);
   const std::vector<Happening> happenings = {
       {"a surface: the word alone", {}, 0, {kComparison, kWhole, kWord}},
@@ -398,11 +398,8 @@ TEST(PooledCosts, Merges) {
 
 // A pool without room: whatever a fragment takes, the next one collects.
 TEST(PooledCosts, Collections) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 64, -0.9f);
-  add_right_of(triangles, 192, -0.9f);
-  add_right_of(triangles, 64, -0.8f);
-  add_everywhere(triangles, -0.1f);
+  SetupTriangles triangles =
+      triangles_of({left_of(64, -0.9f), right_of(192, -0.9f), right_of(64, -0.8f), everywhere(-0.1f)});
   const std::vector<glm::vec3> colors(4, kRed);
   const std::vector<float> watermarks{-0.95f, -0.95f, -0.85f, -0.1f};
   const auto new_tile = [&] { return OpenTile<kWords>(triangles, colors, {0, 0, 1, 1}, ChunkPool(0)); };
@@ -438,11 +435,8 @@ TEST(PooledCosts, Collections) {
 
 // A pool of three chunks: the others of a record are in memory. Once a record needs three, what was in memory moves.
 TEST(PooledCosts, Spills) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_left_of(triangles, 128, -0.75f);
-  add_right_of(triangles, 192, -0.8f);
-  add_right_of(triangles, 128, -0.85f);
+  SetupTriangles triangles =
+      triangles_of({everywhere(-0.25f), left_of(128, -0.75f), right_of(192, -0.8f), right_of(128, -0.85f)});
   const std::vector<glm::vec3> colors(4, kRed);
   const std::vector<Happening> happenings = {
       {"three chunks more, in memory: their links are read, and they are written",
@@ -466,9 +460,7 @@ TEST(PooledCosts, Spills) {
 
 // At the end all that is left is final: a word, a record, two owners whose shares are compared, and the limit.
 TEST(PooledCosts, TheEndOfAPixel) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_left_of(triangles, 128, -0.75f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.25f), left_of(128, -0.75f)});
   const std::vector<glm::vec3> colors(2, kRed);
   OpenTile<kWords> covered(triangles, colors), shared(triangles, colors);
   covered.compose({0});

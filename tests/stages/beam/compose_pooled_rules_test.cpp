@@ -43,7 +43,6 @@ TEST(PooledRules, APixelWithoutFragmentsIsEmpty) {
 // Most triangles are within the tolerance of their count; all are after it limits them.
 TEST(PooledRules, OneTriangleHasItsExactArea) {
   Random random(231);
-  SCOPED_TRACE(random.name());
   int exact = 0, drawn = 0;
   while (drawn < 500) {
     SetupTriangles triangles;
@@ -66,9 +65,7 @@ TEST(PooledRules, OneTriangleHasItsExactArea) {
 TEST(PooledRules, TwoHalvesFillAPixel) {
   for (const int x : {77, 128, 201}) {
     for (const float right : {-0.9f, -0.5f, -0.1f}) {
-      SetupTriangles triangles;
-      add_left_of(triangles, x, -0.5f);
-      add_right_of(triangles, x, right);
+      SetupTriangles triangles = triangles_of({left_of(x, -0.5f), right_of(x, right)});
       const std::vector<glm::vec3> colors{kRed, kGreen};
       for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
         OpenTile<8, 2> tile(triangles, colors);
@@ -88,9 +85,7 @@ TEST(PooledRules, TwoHalvesFillAPixel) {
 }
 
 TEST(PooledRules, ANearSurfaceHidesAFarOne) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_everywhere(triangles, -0.75f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.25f), everywhere(-0.75f)});
   const std::vector<glm::vec3> colors{kGreen, {0.3f, 0.7f, 0.1f}};
   for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
     OpenTile<8, 2> wide(triangles, colors);
@@ -108,9 +103,7 @@ TEST(PooledRules, ANearSurfaceHidesAFarOne) {
 }
 
 TEST(PooledRules, AnEdgeOverASurface) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_left_of(triangles, 78, -0.75f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.25f), left_of(78, -0.75f)});
   const std::vector<glm::vec3> colors{kGreen, kRed};
   for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
     OpenTile<8, 2> tile(triangles, colors);
@@ -123,7 +116,7 @@ TEST(PooledRules, AnEdgeOverASurface) {
     EXPECT_EQ(tile.record_bytes.at(0), 54.0f) << "with links of two bytes";
   }
   // A third one in front of both takes the pixel, and the record is free again.
-  add_everywhere(triangles, -0.9f);
+  add_triangle(triangles, everywhere(-0.9f));
   const std::vector<glm::vec3> three{kGreen, kRed, kBlue};
   OpenTile<8, 2> tile(triangles, three);
   expect_pixel(tile.compose({0, 1, 2}).at(0), 1, kBlue, 0);
@@ -133,18 +126,17 @@ TEST(PooledRules, AnEdgeOverASurface) {
 
 // A partly covered pixel is not closed; a pixel that several surfaces cover together is, behind the farthest of them.
 TEST(PooledRules, ClosesAPixelBehindAllOfItsOwners) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 100, -0.75f);
+  SetupTriangles triangles = triangles_of({left_of(100, -0.75f)});
   const std::vector<glm::vec3> colors(3, kRed);
   OpenTile<8, 5> half(triangles, colors);
   half.compose({0});
   EXPECT_FALSE(half.closed.hides(0, 0, 0.0f));
-  add_right_of(triangles, 100, -0.5f);
+  add_triangle(triangles, right_of(100, -0.5f));
   OpenTile<8, 5> both(triangles, colors);
   both.compose({0, 1});
   EXPECT_TRUE(both.closed.hides(0, 0, -0.49f));
   EXPECT_FALSE(both.closed.hides(0, 0, -0.51f));
-  add_right_of(triangles, 100, -0.7f);  // replaces the farther half
+  add_triangle(triangles, right_of(100, -0.7f));  // replaces the farther half
   OpenTile<8, 5> nearer(triangles, colors);
   nearer.compose({0, 1, 2});
   EXPECT_TRUE(nearer.closed.hides(0, 0, -0.69f));
@@ -152,10 +144,7 @@ TEST(PooledRules, ClosesAPixelBehindAllOfItsOwners) {
 }
 
 TEST(PooledRules, AtEqualDepthTheFirstTriangleWins) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 126, -0.5f);
-  add_left_of(triangles, 198, -0.5f);
-  add_everywhere(triangles, -0.5f);
+  SetupTriangles triangles = triangles_of({left_of(126, -0.5f), left_of(198, -0.5f), everywhere(-0.5f)});
   const std::vector<glm::vec3> colors{kRed, kGreen, kBlue};
   TriangleList list = all_of(triangles);
   do {
@@ -166,10 +155,10 @@ TEST(PooledRules, AtEqualDepthTheFirstTriangleWins) {
 
 TEST(PooledRules, AThousandCoplanarLayersShowTheFirst) {
   Random random(232);
-  SCOPED_TRACE(random.name());
   for (const bool whole : {true, false}) {
     SetupTriangles triangles;
-    for (int i = 0; i < 1000; ++i) whole ? add_everywhere(triangles, -0.5f) : add_left_of(triangles, 130, -0.5f);
+    for (int i = 0; i < 1000; ++i)
+      whole ? add_triangle(triangles, everywhere(-0.5f)) : add_triangle(triangles, left_of(130, -0.5f));
     std::vector<glm::vec3> colors(1000, kGreen);
     colors[0] = kRed;
     const TriangleList list = all_of(triangles);
@@ -189,8 +178,7 @@ TEST(PooledRules, AThousandCoplanarLayersShowTheFirst) {
 
 // Each position shows the nearer plane there.
 TEST(PooledRules, PlanesThatInterpenetrateAreSplitByPosition) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.5f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.5f)});
   // Depth grows by 1/4 per 10 000/256 px to the right, and is -1/2 at x = 90/256.
   add_triangle(triangles, {90, -20'000, -0.5f}, {10'090, 20'000, -0.25f}, {-9'910, 20'000, -0.75f});
   const std::vector<glm::vec3> colors{kGreen, kRed};
@@ -238,7 +226,6 @@ TEST(PooledRules, WatermarksOnRandomTriangles) {
   int pixels = 0, settled_early = 0;
   for (std::uint64_t seed = 240; seed < 300; ++seed) {
     Random random(seed);
-    SCOPED_TRACE(random.name());
     const SetupTriangles triangles = random_triangles(random, 40);
     const std::vector<glm::vec3> colors = random_colors(triangles, random);
     const Tile area{0, 0, 12, 12};
@@ -270,7 +257,7 @@ void expect_merged_strips() {
   std::vector<glm::vec3> colors;
   constexpr int kStrips = 40;
   for (int i = 0; i < kStrips; ++i) {  // nested: strip i shows 6/256 of the pixel
-    add_left_of(triangles, 6 * (i + 1), -0.9f + 0.02f * static_cast<float>((i)));
+    add_triangle(triangles, left_of(6 * (i + 1), -0.9f + 0.02f * static_cast<float>((i))));
     colors.push_back(i % 3 == 0 ? kRed : i % 3 == 1 ? kGreen : kBlue);
   }
   Random random(301);
@@ -322,7 +309,6 @@ TEST(PooledRules, EachSurfaceWithoutASlotMakesOneMerge) {
 TEST(PooledRules, TheMeanOfManyMergedSurfacesIsTheirMean) {
   for (const bool in_steps : {false, true}) {
     Random random(346);
-    SCOPED_TRACE(random.name());
     std::vector<int> cells(256);
     std::iota(cells.begin(), cells.end(), 0);
     random.shuffle(cells);
@@ -354,14 +340,14 @@ TEST(PooledRules, TheMeanOfManyMergedSurfacesIsTheirMean) {
 TEST(PooledRules, MergesTheClosestSurfaces) {
   SetupTriangles triangles;
   std::vector<glm::vec3> colors{kRed, kGreen, kBlue, {0, 0, 0}};
-  add_left_of(triangles, 80, -0.90f);
-  add_right_of(triangles, 160, -0.89f);
-  add_everywhere(triangles, -0.2f);
+  add_triangle(triangles, left_of(80, -0.90f));
+  add_triangle(triangles, right_of(160, -0.89f));
+  add_triangle(triangles, everywhere(-0.2f));
   OpenTile<8, 2> three(triangles, colors);
   EXPECT_NEAR(three.compose(all_of(triangles)).at(0).color.b, 80.0 / 256, 0.012);
   EXPECT_EQ(three.merges[0], 1);
   // A fourth surface between them hides the far one only.
-  add_everywhere(triangles, -0.5f);
+  add_triangle(triangles, everywhere(-0.5f));
   OpenTile<8, 2> four(triangles, colors);
   const PixelColor found = four.compose(all_of(triangles)).at(0);
   EXPECT_NEAR(found.color.b, 0, 1e-6);
@@ -372,12 +358,11 @@ TEST(PooledRules, MergesTheClosestSurfaces) {
 // Of surfaces at equal depth, those become one that are closest in the order of the draws, here the second and the
 // third. A fourth one hides both of them, so the first one has kept its colour.
 TEST(PooledRules, AtEqualDepthTheClosestInTheTraceBecomeOne) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 80, -0.5f);
-  for (int i = 0; i < 4; ++i) add_everywhere(triangles, -0.1f);  // not in the list
+  SetupTriangles triangles = triangles_of({left_of(80, -0.5f)});
+  for (int i = 0; i < 4; ++i) add_triangle(triangles, everywhere(-0.1f));  // not in the list
   add_triangle(triangles, {80, -9'000, -0.5f}, {160, -9'000, -0.5f}, {160, 9'000, -0.5f});
-  add_right_of(triangles, 160, -0.5f);
-  add_right_of(triangles, 80, -0.9f);
+  add_triangle(triangles, right_of(160, -0.5f));
+  add_triangle(triangles, right_of(80, -0.9f));
   const glm::vec3 black(0);
   const std::vector<glm::vec3> colors{kRed, black, black, black, black, kGreen, kBlue, black};
   OpenTile<8, 2> tile(triangles, colors);
@@ -399,11 +384,10 @@ TEST(PooledRules, ALossIsThatOfTheSmallerSurface) {
 // Two surfaces that become one have the depth of the larger one: a surface between the two depths loses or wins all.
 TEST(PooledRules, MergedSurfacesHaveTheDepthOfTheLargerOne) {
   for (const bool larger_is_nearer : {true, false}) {
-    SetupTriangles triangles;
-    add_left_of(triangles, 160, larger_is_nearer ? -0.56f : -0.54f);
-    add_right_of(triangles, 216, larger_is_nearer ? -0.54f : -0.56f);
-    add_triangle(triangles, {180, -9'000, -0.1f}, {200, -9'000, -0.1f}, {200, 9'000, -0.1f});
-    add_everywhere(triangles, -0.55f);
+    SetupTriangles triangles = triangles_of({left_of(160, larger_is_nearer ? -0.56f : -0.54f),
+                                             right_of(216, larger_is_nearer ? -0.54f : -0.56f),
+                                             {{180, -9'000, -0.1f}, {200, -9'000, -0.1f}, {200, 9'000, -0.1f}},
+                                             everywhere(-0.55f)});
     const std::vector<glm::vec3> colors{kRed, kRed, kGreen, kBlue};
     for (const TriangleList& list : {TriangleList{0, 1, 2, 3}, TriangleList{1, 0, 2, 3}}) {
       OpenTile<8, 2> tile(triangles, colors);
@@ -417,11 +401,8 @@ TEST(PooledRules, MergedSurfacesHaveTheDepthOfTheLargerOne) {
 
 // A surface in front of several owners frees the slots of all.
 TEST(PooledRules, HiddenOwnersGiveBackTheirSlots) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 128, -0.2f);
-  add_right_of(triangles, 128, -0.2f);
-  add_everywhere(triangles, -0.5f);
-  add_left_of(triangles, 78, -0.8f);
+  SetupTriangles triangles =
+      triangles_of({left_of(128, -0.2f), right_of(128, -0.2f), everywhere(-0.5f), left_of(78, -0.8f)});
   const std::vector<glm::vec3> colors{kBlue, kBlue, kGreen, kRed};
   OpenTile<8, 2> tile(triangles, colors);
   expect_pixel(tile.compose(all_of(triangles)).at(0), 1, {78 / 256.0, 178 / 256.0, 0}, 0.012);
@@ -434,10 +415,8 @@ TEST(PooledRules, HiddenPartsOfMergedSurfacesTakeNoArea) {
   int negative = 0;
   for (int x = 48; x < 56; ++x) {
     for (int left = 0; left < 24; ++left) {
-      SetupTriangles triangles;
-      add_left_of(triangles, x, -0.5f);
-      add_right_of(triangles, 154, -0.499f);
-      add_triangle(triangles, {60, -9'000, -0.1f}, {90, -9'000, -0.1f}, {90, 9'000, -0.1f});
+      SetupTriangles triangles = triangles_of(
+          {left_of(x, -0.5f), right_of(154, -0.499f), {{60, -9'000, -0.1f}, {90, -9'000, -0.1f}, {90, 9'000, -0.1f}}});
       // All but a few positions at the upper left corner.
       add_triangle(triangles, {left - 3'000, 3'000, -0.9f}, {left + 3'000, -3'000, -0.9f}, {20'000, 20'000, -0.9f});
       const std::vector<glm::vec3> colors(4, glm::vec3(1.0f));
@@ -465,7 +444,6 @@ TEST(PooledRules, HiddenPartsOfMergedSurfacesTakeNoArea) {
 TEST(PooledRules, TenThousandRandomFragmentsInOnePixel) {
   for (const std::uint64_t seed : {311, 312, 313, 314}) {
     Random random(seed);
-    SCOPED_TRACE(random.name());
     SetupTriangles triangles;
     // Up to 16 px wide, or up to 1/4 px; in one half of the runs nothing covers the right part of the pixel.
     const std::int32_t right = seed % 2 ? 150 : 400;
@@ -512,7 +490,6 @@ TEST(PooledRules, TheOrderOfArrivalDoesNotMatterWhileSlotsSuffice) {
   double worst = 0;
   for (std::uint64_t seed = 320; seed < 340; ++seed) {
     Random random(seed);
-    SCOPED_TRACE(random.name());
     const SetupTriangles triangles = random_triangles(random, 30);
     const std::vector<glm::vec3> colors = random_colors(triangles, random);
     OpenTile<8> one(triangles, colors, {0, 0, 12, 12}), other(triangles, colors, {0, 0, 12, 12});
@@ -557,7 +534,6 @@ SpeckCase place_of_speck(Random& random, std::int32_t x0, std::int32_t x1) {
 
 TEST(PooledRules, AVisibleSpeckAddsItsArea) {
   Random random(341);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     const SpeckCase place = place_of_speck(random, 20, 230);
     SetupTriangles triangles;
@@ -572,12 +548,10 @@ TEST(PooledRules, AVisibleSpeckAddsItsArea) {
 
 TEST(PooledRules, ASpeckBehindAnOwnerAddsNothing) {
   Random random(342);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     const SpeckCase place = place_of_speck(random, 20, 90);
     const auto area_with = [&](float z) {
-      SetupTriangles triangles;
-      add_left_of(triangles, 130, -0.5f);
+      SetupTriangles triangles = triangles_of({left_of(130, -0.5f)});
       add_speck(triangles, place.x, place.y, z, false, 2);
       const std::vector<glm::vec3> colors{kGreen, kRed};
       OpenTile<8, 5> tile(triangles, colors);
@@ -594,12 +568,9 @@ TEST(PooledRules, ASpeckBehindAnOwnerAddsNothing) {
 
 TEST(PooledRules, ASpeckAtAFinalPositionAddsNothing) {
   Random random(343);
-  SCOPED_TRACE(random.name());
   const SpeckCase place = place_of_speck(random, 20, 50);
   for (const bool final : {true, false}) {
-    SetupTriangles triangles;
-    add_left_of(triangles, 80, -0.9f);
-    add_right_of(triangles, 200, -0.89f);
+    SetupTriangles triangles = triangles_of({left_of(80, -0.9f), right_of(200, -0.89f)});
     add_strip(triangles, 100, 110, -0.5f);
     add_speck(triangles, place.x, place.y, -0.95f, false, 2);  // as if the sort had failed
     const std::vector<glm::vec3> colors{kGreen, kGreen, kGreen, kGreen, kRed};
@@ -614,7 +585,6 @@ TEST(PooledRules, ASpeckAtAFinalPositionAddsNothing) {
 
 TEST(PooledRules, TheSidesOfAThinBodyCountOnce) {
   Random random(344);
-  SCOPED_TRACE(random.name());
   const std::vector<glm::vec3> colors(4, kRed);
   for (int i = 0; i < 20; ++i) {
     const SpeckCase place = place_of_speck(random, 20, 230);
@@ -639,7 +609,6 @@ TEST(PooledRules, TheSidesOfAThinBodyCountOnce) {
 
 TEST(PooledRules, TheEstimateIsLimited) {
   Random random(345);
-  SCOPED_TRACE(random.name());
   int kept = 0, moved = 0;
   for (int i = 0; i < 100'000; ++i) {
     const float positions = static_cast<float>(32 << random.integer(0, 3));

@@ -12,7 +12,6 @@ constexpr glm::vec3 kRed{1, 0, 0}, kGreen{0, 1, 0};
 TEST(ComposePooled, RecordsInMemoryAreThoseOfThePool) {
   for (std::uint64_t seed = 420; seed < 440; ++seed) {
     Random random(seed);
-    SCOPED_TRACE(random.name());
     const SetupTriangles triangles = random_triangles(random, 60);
     const std::vector<glm::vec3> colors = random_colors(triangles, random);
     const Tile area{0, 0, 12, 12};
@@ -44,11 +43,10 @@ TEST(ComposePooled, MergesBeyondTheMostOwners) {
 
 // A closed pool of a frame guarantees what two surfaces take: a plane of 16 bytes, and a chunk of two slots.
 TEST(ComposePooled, AClosedPoolRefusesAThirdSurfaceAndSpecks) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.25f);
-  add_left_of(triangles, 128, -0.75f);
-  add_right_of(triangles, 192, -0.8f);
-  add_triangle(triangles, {50, 50, -0.85f}, {51, 50, -0.85f}, {50, 51, -0.85f});
+  SetupTriangles triangles = triangles_of({everywhere(-0.25f),
+                                           left_of(128, -0.75f),
+                                           right_of(192, -0.8f),
+                                           {{50, 50, -0.85f}, {51, 50, -0.85f}, {50, 51, -0.85f}}});
   const std::vector<glm::vec3> colors(4, kRed);
   const auto compose = [&](const TriangleList& list) {
     ChunkPool pool = ChunkPool::of_frame(least_chunks(4));
@@ -67,13 +65,12 @@ TEST(ComposePooled, AClosedPoolRefusesAThirdSurfaceAndSpecks) {
 // In streaming order a speck may be hidden later: by a triangle that covers the pixel, or by two halves. What closes
 // the pixel behind it, or leaves a part open, does not hide it.
 TEST(ComposePooled, SpecksThatAreHiddenLaterAreForgotten) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.2f);
-  add_triangle(triangles, {50, 50, -0.5f}, {56, 50, -0.5f}, {50, 56, -0.5f});
-  add_everywhere(triangles, -0.9f);
-  add_left_of(triangles, 128, -0.8f);
-  add_right_of(triangles, 128, -0.8f);
-  add_right_of(triangles, 128, -0.4f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.2f),
+                                           {{50, 50, -0.5f}, {56, 50, -0.5f}, {50, 56, -0.5f}},
+                                           everywhere(-0.9f),
+                                           left_of(128, -0.8f),
+                                           right_of(128, -0.8f),
+                                           right_of(128, -0.4f)});
   const std::vector<glm::vec3> colors{kRed, kGreen, kRed, kRed, kRed, kRed};
   const auto green = [&](const TriangleList& list) {
     OpenTile<8> tile(triangles, colors);
@@ -91,10 +88,7 @@ TEST(ComposePooled, SpecksThatAreHiddenLaterAreForgotten) {
 }
 
 TEST(ComposePooled, ACollectionFinishesPixels) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 128, -0.9f);
-  add_right_of(triangles, 128, -0.8f);
-  add_everywhere(triangles, -0.1f);
+  SetupTriangles triangles = triangles_of({left_of(128, -0.9f), right_of(128, -0.8f), everywhere(-0.1f)});
   const std::vector<glm::vec3> colors{kRed, kGreen, {0, 0, 1}};
   const std::vector<float> watermarks{-0.9f, -0.8f, -0.1f};
   OpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, ChunkPool(0));  // no room at all: every fragment collects

@@ -47,18 +47,10 @@ class OnePixel {
   void clear_before_next(std::optional<std::uint32_t> stencil, bool depth = false) {
     rules_.clears.push_back({static_cast<std::uint32_t>(rules_.draws.size()), depth, stencil});
   }
-  void triangle(const ScreenPoint& p, const ScreenPoint& q, const ScreenPoint& r) {
-    add([&] { add_triangle(triangles_, p, q, r); });
-  }
-  void left_of(std::int32_t x, float z = -0.5f) {
-    add([&] { add_left_of(triangles_, x, z); });
-  }
-  void right_of(std::int32_t x, float z = -0.5f) {
-    add([&] { add_right_of(triangles_, x, z); });
-  }
-  void everywhere(float z = -0.5f) {
-    add([&] { add_everywhere(triangles_, z); });
-  }
+  void triangle(const ScreenPoint& p, const ScreenPoint& q, const ScreenPoint& r) { add({p, q, r}); }
+  void left_of(std::int32_t x, float z = -0.5f) { add(beampipe::left_of(x, z)); }
+  void right_of(std::int32_t x, float z = -0.5f) { add(beampipe::right_of(x, z)); }
+  void everywhere(float z = -0.5f) { add(beampipe::everywhere(z)); }
   void everywhere(const RopRule& rule, const glm::vec4& color, float z = -0.5f) {
     begin(rule, color);
     everywhere(z);
@@ -91,9 +83,8 @@ class OnePixel {
   int merged = 0;
 
  private:
-  template <class Add>
-  void add(Add&& one) {
-    one();
+  void add(const ScreenTriangle& triangle) {
+    add_triangle(triangles_, triangle);
     triangles_.draws.resize(triangles_.triangles.size(), static_cast<std::uint32_t>(rules_.draws.size() - 1));
     colors_.resize(triangles_.triangles.size(), color_);
   }

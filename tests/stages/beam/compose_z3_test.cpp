@@ -21,10 +21,7 @@ std::vector<Z3Pixel<Words>> composed(const SetupTriangles& triangles, const std:
 const Tile kPixel{0, 0, 1, 1};
 
 TEST(ComposeZ3, LayersThatFitAreWeightedByTheirPositions) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.5f);
-  add_left_of(triangles, 64, -0.75f);
-  add_right_of(triangles, 192, -0.6f);
+  SetupTriangles triangles = triangles_of({everywhere(-0.5f), left_of(64, -0.75f), right_of(192, -0.6f)});
   const PixelColor found = z3_colors(composed<4>(triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kPixel)).at(0);
   EXPECT_EQ(found.alpha, 1.0f);
   EXPECT_EQ(found.color, glm::vec3(0.5f, 0.25f, 0.25f));
@@ -33,9 +30,9 @@ TEST(ComposeZ3, LayersThatFitAreWeightedByTheirPositions) {
 TEST(ComposeZ3, OrderDoesNotMatterWhileLayersFit) {
   for (const bool front_first : {true, false}) {
     SetupTriangles triangles;
-    if (front_first) add_left_of(triangles, 128, -0.75f);
-    add_everywhere(triangles, -0.5f);
-    if (!front_first) add_left_of(triangles, 128, -0.75f);
+    if (front_first) add_triangle(triangles, left_of(128, -0.75f));
+    add_triangle(triangles, everywhere(-0.5f));
+    if (!front_first) add_triangle(triangles, left_of(128, -0.75f));
     std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}};
     if (!front_first) std::swap(colors[0], colors[1]);
     EXPECT_EQ(z3_colors(composed<1>(triangles, colors, kPixel)).at(0).color, glm::vec3(0.5f, 0.5f, 0)) << front_first;
@@ -44,11 +41,8 @@ TEST(ComposeZ3, OrderDoesNotMatterWhileLayersFit) {
 
 TEST(ComposeZ3, TheClosestTwoAreMerged) {
   // Four strips next to each other. The two that are closest in depth are merged.
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.4f);
-  add_left_of(triangles, 192, -0.41f);
-  add_left_of(triangles, 64, -0.9f);
-  add_left_of(triangles, 32, -0.95f);
+  SetupTriangles triangles =
+      triangles_of({everywhere(-0.4f), left_of(192, -0.41f), left_of(64, -0.9f), left_of(32, -0.95f)});
   const std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
   const auto pixels = composed<1>(triangles, colors, kPixel);
   const PixelColor before = z3_colors(pixels).at(0);

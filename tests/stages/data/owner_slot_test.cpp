@@ -56,7 +56,6 @@ TEST(OwnerSlot, AMergedSlotKeepsAColour) {
 // The error of a mask is rounded to the nearest step of 1/32 position, and limited to what 8 bits hold.
 TEST(OwnerSlot, TheErrorOfASlotIsRoundedAndLimited) {
   Random random(201);
-  SCOPED_TRACE(random.name());
   constexpr float kMost = 127.0f / 32;
   OwnerSlot slot;
   const auto stored = [&](float error, bool merged) {
@@ -89,7 +88,6 @@ TEST(OwnerSlot, TheErrorOfASlotIsRoundedAndLimited) {
 // at most sqrt(n) / 2 units, and five of these are allowed.
 TEST(FixedSum, ManySmallAddendsAreRightOnAverage) {
   Random random(202);
-  SCOPED_TRACE(random.name());
   for (const double largest : {2.0 / 32768, 1.0 / 65536, 1e-6}) {
     FixedSum sum;
     double exact = 0;
@@ -127,7 +125,6 @@ TEST(FixedSum, StopsAtItsLimits) {
 // many small addends are right on average.
 TEST(ColorSums, AreRightWhateverTheSizeOfColors) {
   Random random(203);
-  SCOPED_TRACE(random.name());
   for (const double brightest : {1e-6, 1e-3, 1.0, 100.0, 1e6}) {
     for (int run = 0; run < 20; ++run) {
       ColorSums sums;
@@ -165,7 +162,6 @@ TEST(ColorSums, HoldABrightColorAfterDarkOnes) {
 template <std::size_t Words, std::size_t Bits>
 void expect_states(std::uint64_t seed) {
   Random random(seed);
-  SCOPED_TRACE(random.name());
   PositionStates<Words, Bits> states{};
   std::vector<std::uint32_t> expected(32 * Words);
   for (int step = 0; step < 200; ++step) {

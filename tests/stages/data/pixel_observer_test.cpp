@@ -106,10 +106,7 @@ TEST(PixelObserver, ExplainColorsUpToTheirLimits) {
 // Three strips with two slots: the two left ones become one. A third of the pixel each, or what a surface in front of
 // the merged one leaves of it.
 TEST(PixelObserver, WhatIsLeftOfAMergedOwnerIsSharedByItsTriangles) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 64, -0.5f);
-  add_right_of(triangles, 192, -0.49f);
-  add_everywhere(triangles, -0.2f);
+  SetupTriangles triangles = triangles_of({left_of(64, -0.5f), right_of(192, -0.49f), everywhere(-0.2f)});
   const std::vector<glm::vec3> colors{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   OpenTile<8, 2> tile(triangles, colors);
   const PixelObservers observers = observers_of(1, tile.positions);

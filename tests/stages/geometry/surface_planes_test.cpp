@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "stages/geometry/vertex_setup.h"
+#include "tests/simd/clipped_polygon.h"
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
@@ -27,25 +28,17 @@ ExactVertex transformed(const glm::dmat4& matrix, const glm::vec3& p, int corner
   return vertex;
 }
 
-// Sutherland and Hodgman, on the inner products of vertices with a plane.
 ExactPolygon clipped(const ExactPolygon& polygon, const std::array<Rational, 4>& plane) {
-  const auto distance = [&](const ExactVertex& v) {
-    Rational sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) sum += plane[k] * v.clip[k];
-    return sum;
-  };
-  ExactPolygon result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const ExactVertex &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const Rational a = distance(from), b = distance(to);
-    if (a >= 0) result.push_back(from);
-    if ((a >= 0) == (b >= 0)) continue;
-    const Rational t = a / (a - b);
-    ExactVertex crossing{{}, from.second + t * (to.second - from.second), from.third + t * (to.third - from.third)};
-    for (std::size_t k = 0; k < 4; ++k) crossing.clip[k] = from.clip[k] + t * (to.clip[k] - from.clip[k]);
-    result.push_back(crossing);
-  }
-  return result;
+  return clipped_polygon(
+      polygon,
+      [&](const ExactVertex& v) {
+        return Rational(std::inner_product(plane.begin(), plane.end(), v.clip.begin(), Rational(0)));
+      },
+      [](const ExactVertex& from, const ExactVertex& to, const Rational& t) {
+        ExactVertex crossing{{}, from.second + t * (to.second - from.second), from.third + t * (to.third - from.third)};
+        for (std::size_t k = 0; k < 4; ++k) crossing.clip[k] = from.clip[k] + t * (to.clip[k] - from.clip[k]);
+        return crossing;
+      });
 }
 
 struct Screen {

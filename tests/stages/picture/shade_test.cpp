@@ -6,8 +6,7 @@
 namespace beampipe::shade_test {
 
 SetupTriangles with_attributes(const FlatAttributes& flat) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {0, 0}, {256, 0}, {0, 256});
+  SetupTriangles triangles = triangles_of({{{0, 0}, {256, 0}, {0, 256}}});
   triangles.attributes[0] = flat;
   return triangles;
 }
@@ -31,8 +30,9 @@ TEST(Shade, UnlitIsKd) {
 }
 
 TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {64, -5'000}, {64, 5'000}, {-5'000, 0});  // a quarter of the pixel
+  SetupTriangles triangles = triangles_of({
+      {{64, -5'000}, {64, 5'000}, {-5'000, 0}}  // a quarter of the pixel
+  });
   Fragments fragments = beam_fragments(triangles, {0, 0, 1, 1}, MaskSource::table);
   StageCounters counters;
   shade(std::vector<glm::vec3>{{1, 2, 4}}, fragments.list, counters);
@@ -45,16 +45,14 @@ TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
 // A triangle in one pixel; two in the same pixel, which share no quad; and one that covers all of 8 x 8 pixels, 16
 // whole quads.
 TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
-  SetupTriangles in_a_pixel, two, everywhere;
-  add_triangle(in_a_pixel, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
-  add_triangle(two, {20, 20}, {230, 30}, {20, 230});
-  add_triangle(two, {240, 240}, {30, 240}, {240, 40});
-  add_everywhere(everywhere, -0.5f);
+  const SetupTriangles in_a_pixel = triangles_of({{{3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230}}});
+  const SetupTriangles two = triangles_of({{{20, 20}, {230, 30}, {20, 230}}, {{240, 240}, {30, 240}, {240, 40}}});
+  const SetupTriangles whole = triangles_of({everywhere(-0.5f)});
   struct Case {
     const SetupTriangles& triangles;
     std::uint64_t used, issued;
   };
-  for (const auto& [triangles, used, issued] : {Case{in_a_pixel, 1, 4}, {two, 2, 8}, {everywhere, 64, 64}}) {
+  for (const auto& [triangles, used, issued] : {Case{in_a_pixel, 1, 4}, {two, 2, 8}, {whole, 64, 64}}) {
     const std::vector<glm::vec3> colors(triangles.triangles.size(), glm::vec3(1.0f));
     const Tile tile{0, 0, 8, 8};
     Fragments fragments = beam_fragments(triangles, tile, MaskSource::table);

@@ -67,7 +67,7 @@ TEST(BinSort, KeysReachBeyondTheNearAndFarPlanes) {
 
 SetupTriangles flat_triangles(const std::vector<float>& depths) {
   SetupTriangles triangles;
-  for (const float z : depths) add_everywhere(triangles, z);
+  for (const float z : depths) add_triangle(triangles, everywhere(z));
   return triangles;
 }
 
@@ -155,8 +155,9 @@ TEST(BinSort, NothingThatFollowsIsNearerThanTheWatermark) {
 // Without a slope the watermark is the depth of the triangle, up to the key's rounding: it is no bound of something
 // larger.
 TEST(BinSort, WatermarksAreTight) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {0, 0, -0.75f}, {4096, 0, -0.25f}, {0, 4096, -0.75f});  // farther to the right
+  SetupTriangles triangles = triangles_of({
+      {{0, 0, -0.75f}, {4096, 0, -0.25f}, {0, 4096, -0.75f}}  // farther to the right
+  });
   StageCounters counters;
   const auto watermark = [&](const Tile& tile) { return bin_sort(triangles, {0}, tile, counters).watermarks.at(0); };
   EXPECT_NEAR(watermark({0, 0, 16, 16}), -0.75f, 1e-4);

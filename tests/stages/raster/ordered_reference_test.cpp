@@ -37,10 +37,10 @@ struct Stream {
 // 72/256 px are four and a half columns of samples: 4.5/16 of all.
 TEST(OrderedReference, SamplesOfACellHaveColorsOfTheirOwn) {
   Stream stream;
-  add_everywhere(stream.triangles, -0.5f), stream.add({1, 0, 0});
-  add_everywhere(stream.triangles, -0.75f), stream.add({0, 0, 0.25f}).blend = kAdd;
-  add_left_of(stream.triangles, 72, -0.75f), stream.add({0, 0.5f, 0}).blend = kAdd;
-  add_everywhere(stream.triangles, -0.75f), stream.add({0, 0, 0.5f}).blend = kAdd;
+  add_triangle(stream.triangles, everywhere(-0.5f)), stream.add({1, 0, 0});
+  add_triangle(stream.triangles, everywhere(-0.75f)), stream.add({0, 0, 0.25f}).blend = kAdd;
+  add_triangle(stream.triangles, left_of(72, -0.75f)), stream.add({0, 0.5f, 0}).blend = kAdd;
+  add_triangle(stream.triangles, everywhere(-0.75f)), stream.add({0, 0, 0.5f}).blend = kAdd;
   for (Draw& draw : stream.frame.draws) draw.state.depth.function = Compare::less_equal;
   const glm::vec4 found = stream.picture();
   EXPECT_FLOAT_EQ(found.r, 1);
@@ -51,9 +51,9 @@ TEST(OrderedReference, SamplesOfACellHaveColorsOfTheirOwn) {
 // A draw that only marks depth leaves the colour to the next one, and what it failed at has that of the clear.
 TEST(OrderedReference, DrawsWithoutColorOnlyMark) {
   Stream stream;
-  add_left_of(stream.triangles, 64, -0.75f), stream.add({1, 0, 0}).color_mask = 0;
-  add_everywhere(stream.triangles, -0.5f), stream.add({0, 1, 0}).blend = kAdd;
-  add_everywhere(stream.triangles, -0.875f), stream.add({0.5f, 0, 0}).blend = kAdd;
+  add_triangle(stream.triangles, left_of(64, -0.75f)), stream.add({1, 0, 0}).color_mask = 0;
+  add_triangle(stream.triangles, everywhere(-0.5f)), stream.add({0, 1, 0}).blend = kAdd;
+  add_triangle(stream.triangles, everywhere(-0.875f)), stream.add({0.5f, 0, 0}).blend = kAdd;
   const glm::vec4 found = stream.picture();
   EXPECT_FLOAT_EQ(found.r, 0.5f);
   EXPECT_FLOAT_EQ(found.g, 0.75f);
@@ -63,14 +63,14 @@ TEST(OrderedReference, DrawsWithoutColorOnlyMark) {
 // The left half is in front of the second draw, which marks it with 1 and the rest with 2.
 TEST(OrderedReference, StencilTellsSamplesThatFailFromThoseThatPass) {
   Stream stream;
-  add_left_of(stream.triangles, 128, -0.75f), stream.add({1, 0, 0});
-  add_everywhere(stream.triangles, -0.5f);
+  add_triangle(stream.triangles, left_of(128, -0.75f)), stream.add({1, 0, 0});
+  add_triangle(stream.triangles, everywhere(-0.5f));
   stream.add({0, 0, 0}).stencil = Stencil{.function = Compare::always,
                                           .reference = 2,
                                           .depth_fail = StencilOperation::increment,
                                           .pass = StencilOperation::replace};
   for (const std::uint32_t mark : {1u, 2u}) {
-    add_everywhere(stream.triangles, -0.875f);
+    add_triangle(stream.triangles, everywhere(-0.875f));
     DrawState& state = stream.add(mark == 1 ? glm::vec3(0, 0.25f, 0) : glm::vec3(0, 0, 0.5f));
     state.depth.test = false, state.blend = kAdd;
     state.stencil = Stencil{.function = Compare::equal, .reference = mark};
@@ -83,8 +83,8 @@ TEST(OrderedReference, StencilTellsSamplesThatFailFromThoseThatPass) {
 
 TEST(OrderedReference, DepthsAreLimited) {
   Stream stream;
-  add_everywhere(stream.triangles, -1.5f), stream.add({1, 0, 0});
-  add_everywhere(stream.triangles, -1.25f), stream.add({0, 1, 0}).depth.function = Compare::equal;
+  add_triangle(stream.triangles, everywhere(-1.5f)), stream.add({1, 0, 0});
+  add_triangle(stream.triangles, everywhere(-1.25f)), stream.add({0, 1, 0}).depth.function = Compare::equal;
   EXPECT_FLOAT_EQ(stream.picture().g, 1) << "both are at the near plane";
 }
 

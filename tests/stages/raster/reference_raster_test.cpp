@@ -18,14 +18,8 @@ std::vector<std::uint64_t> brute_force(const SetupTriangles& triangles, const Ti
       std::uint64_t owner = kNoOwner;
       for (std::size_t i = 0; i < triangles.triangles.size(); ++i) {
         const SetupTriangle& t = triangles.triangles[i];
-        bool inside = true;
-        for (int k = 0; k < 3; ++k) {
-          const std::int64_t px = t.x[k], py = t.y[k], qx = t.x[(k + 1) % 3], qy = t.y[(k + 1) % 3];
-          const std::int64_t value = (qx - px) * (y - 32 * py) - (x - 32 * px) * (qy - py);
-          inside &= std::tuple(value, py - qy, qx - px) >= std::tuple(0, 0, 0);  // ties: right, then down
-        }
         const double depth = t.depth.at(static_cast<double>(x) / 8192, static_cast<double>(y) / 8192);
-        if (!inside || !(depth < nearest)) continue;
+        if (!covers(t, x, y, 32) || !(depth < nearest)) continue;
         nearest = depth;
         owner = i;
       }
@@ -95,9 +89,8 @@ std::vector<double> errors_of_areas(const ReferencePattern& pattern) {
   for (int i = 0; i < 400; ++i) {
     // A parallelogram whose sides cut the upper and the lower border of the pixel: its area is that of a trapezoid.
     const std::int32_t top = random.int32(20, 236), bottom = random.int32(20, 236);
-    SetupTriangles triangles;
-    add_triangle(triangles, {-1000, 0, -0.5f}, {top, 0, -0.5f}, {bottom, 256, -0.5f});
-    add_triangle(triangles, {-1000, 0, -0.5f}, {bottom, 256, -0.5f}, {-1000, 256, -0.5f});
+    SetupTriangles triangles = triangles_of({{{-1000, 0, -0.5f}, {top, 0, -0.5f}, {bottom, 256, -0.5f}},
+                                             {{-1000, 0, -0.5f}, {bottom, 256, -0.5f}, {-1000, 256, -0.5f}}});
     ReferenceTile surface(tile, pattern);
     StageCounters counters;
     reference_raster({triangles, all_of(triangles), tile}, counters, surface);

@@ -30,17 +30,6 @@ Raster rasterize(const SetupTriangles& triangles, const Tile& tile, const Sampli
   return raster;
 }
 
-// A sample on an edge counts as if it lay a little further to the right, and even less further down. Then no sample
-// lies on any edge.
-bool covers(const SetupTriangle& t, std::int64_t x, std::int64_t y) {
-  for (int k = 0; k < 3; ++k) {
-    const std::int64_t px = t.x[k], py = t.y[k], qx = t.x[(k + 1) % 3], qy = t.y[(k + 1) % 3];
-    const std::int64_t value = (qx - px) * (y - py) - (x - px) * (qy - py);
-    if (std::tuple(value, py - qy, qx - px) < std::tuple(0, 0, 0)) return false;
-  }
-  return true;
-}
-
 TEST(SampleRaster, EqualsATestOfEverySample) {
   Random random(114);
   for (const Sampling& sampling : every_sampling()) {

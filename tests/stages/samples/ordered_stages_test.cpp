@@ -20,7 +20,7 @@ struct Draws {
   Draws() { trace.meshes.emplace_back().triangles = {{0, 1, 2}}; }
 
   DrawState& add(float depth, std::uint32_t mask = 3) {
-    add_everywhere(triangles, depth);
+    add_triangle(triangles, everywhere(depth));
     const auto number = static_cast<std::uint32_t>(triangles.draws.size());
     triangles.draws.push_back(number);
     fragments.push_back({number, number, 1, 0, mask});
@@ -159,7 +159,7 @@ TEST(OrderedTest, EachFaceHasItsCosts) {
   Draws draws;
   DrawState& state = draws.add(-0.5f);
   state.depth.test = false;
-  add_everywhere(draws.triangles, -0.5f);
+  add_triangle(draws.triangles, everywhere(-0.5f));
   draws.triangles.draws.push_back(0);
   draws.triangles.triangles[0].front = true, draws.triangles.triangles[1].front = false;
   draws.fragments.push_back({1, 1, 1, 0, 3});

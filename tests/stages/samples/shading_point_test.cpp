@@ -8,8 +8,9 @@ namespace beampipe::shading_point_test {
 constexpr Tile kTile{0, 0, 8, 8};
 
 TEST(ShadingPoint, IsTheMeanOfTheCoveredSamplesWhereTheCentreIsNotCovered) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 2 * 256 + 100, -0.5f);  // the left 100/256 of pixel 2, without its centre
+  SetupTriangles triangles = triangles_of({
+      left_of(2 * 256 + 100, -0.5f)  // the left 100/256 of pixel 2, without its centre
+  });
   const Sampling sampling{CellGrid{}, standard_pattern(4)};
   bool tried = false;
   for (const SampleFragment& fragment : sample_fragments(triangles, kTile, sampling)) {
@@ -54,8 +55,7 @@ TEST(ShadingPoint, ExtrapolatesAtTheCentreOnly) {
 }
 
 TEST(ShadingPoint, CountsWhatItLooksAt) {
-  SetupTriangles triangles;
-  add_left_of(triangles, 2 * 256 + 100, -0.5f);
+  SetupTriangles triangles = triangles_of({left_of(2 * 256 + 100, -0.5f)});
   const Sampling sampling{CellGrid{}, standard_pattern(4)};
   StageCounters counters;
   std::vector<float> centroids(kTile.pixels());

@@ -42,9 +42,7 @@ const Sampling kMsaa8{CellGrid{}, standard_pattern(8)};
 
 TEST(DepthTestStage, NearerWinsInAnyOrder) {
   for (const float first : {-0.25f, -0.75f}) {
-    SetupTriangles triangles;
-    add_everywhere(triangles, first);
-    add_everywhere(triangles, -1.0f - first);
+    SetupTriangles triangles = triangles_of({everywhere(first), everywhere(-1.0f - first)});
     const Tested found = render(triangles, kMsaa8);
     const std::uint32_t nearer = first < -0.5f ? 0 : 1;
     for (std::size_t i = 0; i < kTile.pixels() * 8; ++i) ASSERT_EQ(found.surface.triangle[i], nearer);
@@ -54,8 +52,9 @@ TEST(DepthTestStage, NearerWinsInAnyOrder) {
 }
 
 TEST(DepthTestStage, EqualDepthKeepsTheEarlier) {
-  SetupTriangles triangles;  // slanted, so that depths are not round numbers
-  add_triangle(triangles, {-9'000, -9'000, -0.9f}, {20'000, -9'000, -0.3f}, {-9'000, 20'000, -0.2f});
+  // slanted, so that depths are not round numbers
+  SetupTriangles triangles =
+      triangles_of({{{-9'000, -9'000, -0.9f}, {20'000, -9'000, -0.3f}, {-9'000, 20'000, -0.2f}}});
   triangles.triangles.push_back(triangles.triangles[0]);
   for (const Sampling& sampling : {kMsaa8, Sampling{CellGrid{4, 2}, standard_pattern(8, 64, 128)}}) {
     const Tested found = render(triangles, sampling);
@@ -103,16 +102,15 @@ TEST(DepthTestStage, ClosedCellsHideNothingThatRoundingBringsBeforeThem) {
     const auto corner = [&] {
       return ScreenPoint{x + random.int32(-20, 20), y + random.int32(-20, 20), behind + random.real32(0, 0.4f)};
     };
-    SetupTriangles triangles;
-    add_everywhere(triangles, -0.5f);
-    add_triangle(triangles, {x, y, behind}, corner(), corner());
+    SetupTriangles triangles = triangles_of({everywhere(-0.5f), {{x, y, behind}, corner(), corner()}});
     left_out(triangles, kMsaa8);
   }
 }
 
 TEST(DepthTestStage, UncoveredSamplesKeepTheBackground) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {4 * 256, -90'000}, {4 * 256, 90'000}, {-90'000, 0});  // the tile's left half
+  SetupTriangles triangles = triangles_of({
+      {{4 * 256, -90'000}, {4 * 256, 90'000}, {-90'000, 0}}  // the tile's left half
+  });
   const Tested found = render(triangles, kMsaa8);
   for (std::size_t i = 0; i < kTile.pixels() * 8; ++i) {
     const bool left = i / 8 % 4 < 2;
@@ -151,9 +149,10 @@ TEST(DepthTestStage, CrossingPlanesAreComparedAtTheSamples) {
 
 // TwinCounts count operations.
 TEST(DepthTestStage, CountsBytes) {
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.5f);
-  add_everywhere(triangles, -0.25f);  // hidden
+  SetupTriangles triangles = triangles_of({
+      everywhere(-0.5f),
+      everywhere(-0.25f)  // hidden
+  });
   const Tested found = render(triangles, kMsaa8);
   const std::uint64_t samples = kTile.pixels() * 8;
   EXPECT_EQ(found.counters.bytes_read, 2 * samples * 4 + 2 * kTile.pixels() * 10);
