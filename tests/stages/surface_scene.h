@@ -34,6 +34,7 @@ struct SurfaceTrace {
 
   Frame& frame() { return trace.frames[0]; }
   Mesh& mesh() { return trace.meshes.back(); }
+  Texture& base_texture() { return *trace.materials[0].base_texture; }
 
   std::uint32_t add_image(const TextureImage& image) {
     trace.images.push_back(image);
@@ -79,6 +80,21 @@ inline Material textured_material(std::uint32_t image, AlphaMode mode = AlphaMod
   Material material = unlit_material(glm::vec4(1.0f), mode);
   material.base_texture = Texture{.image = image};
   return material;
+}
+
+// A white image; `alpha(i)`: of its texels, in codes.
+template <class Alpha>
+TextureImage image_with_alphas(std::uint32_t width, std::uint32_t height, Alpha&& alpha) {
+  TextureImage image = filled_image(width, height, glm::u8vec4(255));
+  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = static_cast<std::uint8_t>(alpha(i));
+  return image;
+}
+
+// A rectangle with an image that fills a frame of side x side pixels.
+inline SurfaceTrace full_of(const TextureImage& image, AlphaMode mode = AlphaMode::opaque, std::uint32_t side = 8) {
+  SurfaceTrace scene(side, side);
+  scene.add_rectangle(0, 0, side, side, 0.5, textured_material(scene.add_image(image), mode));
+  return scene;
 }
 
 inline void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double bound) {

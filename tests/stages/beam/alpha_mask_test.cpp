@@ -54,15 +54,12 @@ TEST(AlphaMask, OpaqueFragmentsAreUntouched) {
 
 // The left half of the texture is opaque, and the border lies on a pixel's border.
 TEST(AlphaMask, ACutoutLeavesWhereTheTextureIsOpaque) {
-  SurfaceTrace scene(8, 8);
-  const TextureImage image{"halves", 2, 1, {{255, 255, 255, 255}, {255, 255, 255, 0}}};
-  Material material = textured_material(scene.add_image(image), AlphaMode::mask);
-  material.base_texture->wrap_u = Wrap::clamp;
-  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  SurfaceTrace scene = full_of({"halves", 2, 1, {{255, 255, 255, 255}, {255, 255, 255, 0}}}, AlphaMode::mask);
+  scene.base_texture().wrap_u = Wrap::clamp;
   for (const AlphaPlaces places : kAllPlaces) {
     scene.trace.materials[0].alpha_cutoff = 0.5f;
     for (const Filter filter : {Filter::nearest, Filter::linear}) {
-      scene.trace.materials[0].base_texture->magnify = filter;
+      scene.base_texture().magnify = filter;
       const Masked found = masked(ShadedScene(scene.trace), 256, places);
       EXPECT_NEAR(area(found.after), 32, 1e-4);
       EXPECT_EQ(positions(found.after), 32 * 256);
@@ -104,11 +101,9 @@ TEST(AlphaMask, PlacesTellOfAllPositionsAroundThem) {
 
 // Half of the pixels lie in texels that pass, and half in others: a look-up of four texels for each pixel and triangle.
 TEST(AlphaMask, PixelsThatAreKnownAsAWholeAreLookedUpOnce) {
-  SurfaceTrace scene(64, 64);
-  TextureImage image = filled_image(64, 64, {255, 255, 255, 255});
-  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = i % 64 < 32 ? 255 : 0;
-  scene.add_rectangle(0, 0, 64, 64, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
-  scene.trace.materials[0].base_texture->wrap_u = Wrap::clamp;
+  SurfaceTrace scene =
+      full_of(image_with_alphas(64, 64, [](std::size_t i) { return i % 64 < 32 ? 255 : 0; }), AlphaMode::mask, 64);
+  scene.base_texture().wrap_u = Wrap::clamp;
   const ShadedScene shaded(scene.trace);
   const Masked found = masked(shaded);
   EXPECT_NEAR(area(found.after), 32 * 64, 1e-3);
@@ -123,10 +118,8 @@ TEST(AlphaMask, PixelsThatAreKnownAsAWholeAreLookedUpOnce) {
 
 // Texels far smaller than the distance of positions, every other one opaque: half of everything is left.
 TEST(AlphaMask, FineTexelsLeaveTheirMean) {
-  SurfaceTrace scene(8, 8);
-  TextureImage image = filled_image(1024, 1024, {255, 255, 255, 0});
-  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = (i + i / 1024) % 2 ? 255 : 0;
-  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+  const SurfaceTrace scene = full_of(
+      image_with_alphas(1024, 1024, [](std::size_t i) { return (i + i / 1024) % 2 ? 255 : 0; }), AlphaMode::mask);
   for (const AlphaPlaces places : kAllPlaces) {
     const Masked found = masked(ShadedScene(scene.trace), 256, places);
     EXPECT_NEAR(area(found.after), 32, 0.15);                // 128 of 255 codes, and filtered borders
@@ -141,10 +134,8 @@ TEST(AlphaMask, FineTexelsLeaveTheirMean) {
 
 // A pixel has 8 x 8 texels, of which the left half pass: all of two of its quarters, and nothing of the others.
 TEST(AlphaMask, APixelThatPassesInPartIsLookedUpInQuarters) {
-  SurfaceTrace scene(8, 8);
-  TextureImage image = filled_image(64, 64, {255, 255, 255, 255});
-  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = i % 8 < 4 ? 255 : 0;
-  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+  const SurfaceTrace scene =
+      full_of(image_with_alphas(64, 64, [](std::size_t i) { return i % 8 < 4 ? 255 : 0; }), AlphaMode::mask);
   const std::vector<SamplePattern> patterns = cell_patterns(256);
   const Masked found = masked(ShadedScene(scene.trace), 256, AlphaPlaces::one);
   EXPECT_EQ(positions(found.after), 64 * 128);
@@ -155,9 +146,8 @@ TEST(AlphaMask, APixelThatPassesInPartIsLookedUpInQuarters) {
 // Of a cutout without mixed positions, the area shrinks by the positions' share.
 TEST(AlphaMask, AreaShrinksByThePositionsShare) {
   SurfaceTrace scene(8, 8);
-  TextureImage image = filled_image(8, 8, {255, 255, 255, 255});
   Random random(1);
-  for (glm::u8vec4& texel : image.texels) texel.a = random.one_in(2) ? 255 : 0;
+  const TextureImage image = image_with_alphas(8, 8, [&](std::size_t) { return random.one_in(2) ? 255 : 0; });
   Material material = textured_material(scene.add_image(image), AlphaMode::mask);
   material.base_texture->magnify = Filter::nearest;
   scene.add_rectangle(0.3, 0.6, 7.2, 7.9, 0.5, material);
@@ -203,11 +193,8 @@ TEST(AlphaMask, ConstantAlphaOfACutoutIsAllOrNothing) {
 TEST(AlphaMask, ConstantAlphaOfFineTexelsIsAllOrNothing) {
   for (const MipFilter mip : {MipFilter::none, MipFilter::nearest, MipFilter::linear})
     for (const std::uint8_t code : {std::uint8_t{76}, std::uint8_t{179}}) {
-      SurfaceTrace scene(8, 8);
-      Material material =
-          textured_material(scene.add_image(filled_image(4, 4, {255, 255, 255, code})), AlphaMode::mask);
-      material.base_texture->mip = mip;
-      scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+      SurfaceTrace scene = full_of(filled_image(4, 4, {255, 255, 255, code}), AlphaMode::mask);
+      scene.base_texture().mip = mip;
       for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= 1000.0f;
       const Masked found = masked(ShadedScene(scene.trace));
       EXPECT_NEAR(area(found.after), code > 127 ? 64 : 0, 1e-4);
@@ -218,19 +205,17 @@ TEST(AlphaMask, ConstantAlphaOfFineTexelsIsAllOrNothing) {
 // Alpha rises evenly from 0 to 1 and falls again, many times in the distance of positions: what is left is the part of
 // it that reaches the cutoff, where alphas of the material and of vertices scale the texture's.
 TEST(AlphaMask, OfFineTexelsThePartThatPassesTheTestIsLeft) {
-  TextureImage image{"ramp", 64, 1, {}};
-  for (int i = 0; i < 64; ++i) image.texels.emplace_back(255, 255, 255, 4 * i + 2);
+  const TextureImage image = image_with_alphas(64, 1, [](std::size_t i) { return 4 * i + 2; });
   for (const Filter filter : {Filter::nearest, Filter::linear})
     for (const MipFilter mip : {MipFilter::none, MipFilter::linear})
       for (const float base : {1.0f, 0.75f})
         for (const float of_vertices : {1.0f, 0.9f, 0.6f})
           for (const float cutoff : {0.125f, 0.375f, 0.5f}) {
-            SurfaceTrace scene(8, 8);
-            Material material = textured_material(scene.add_image(image), AlphaMode::mask);
+            SurfaceTrace scene = full_of(image, AlphaMode::mask);
+            Material& material = scene.trace.materials[0];
             material.base_texture->wrap_u = Wrap::mirror, material.base_texture->mip = mip;
             material.base_texture->magnify = filter;
             material.base_color.a = base, material.alpha_cutoff = cutoff;
-            scene.add_rectangle(0, 0, 8, 8, 0.5, material);
             for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= glm::vec2(128, 1);
             if (of_vertices < 1) scene.mesh().vertex_colors.assign(4, glm::vec4(1, 1, 1, of_vertices));
             const double expected = std::max(0.0, 1 - double{cutoff} / (base * of_vertices));
@@ -264,15 +249,19 @@ TEST(AlphaMask, AFragmentWithoutPositionsIsASpeck) {
   EXPECT_GT(specks, 1000u);
 }
 
+// Alpha is 0 in one of the four texels that are looked up.
+SurfaceTrace one_pixel(AlphaMode mode) {
+  SurfaceTrace scene(1, 1);
+  const TextureImage image = image_with_alphas(2, 2, [](std::size_t i) { return i == 0 ? 0 : 200; });
+  scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), mode));
+  return scene;
+}
+
 // One pixel of a translucent rectangle with a texture: an alpha and 256 ranks. One of a cutout: a look-up of the whole
 // pixel, and 256 alphas and ranks.
 TEST(AlphaMask, CountsItsWork) {
   for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
-    SurfaceTrace scene(1, 1);
-    TextureImage image = filled_image(2, 2, {9, 9, 9, 200});
-    image.texels[0].a = 0;  // one of the four texels that are looked up
-    scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), mode));
-    const ShadedScene shaded(scene.trace);
+    const ShadedScene shaded(one_pixel(mode).trace);
     const Masked found = masked(shaded);
     ASSERT_EQ(found.before.size(), 1u);
     const std::uint64_t alphas = mode == AlphaMode::mask ? 1 + 256 : 1;
@@ -313,10 +302,7 @@ TEST(AlphaMask, SpecksReadNoSheet) {
 // `scale`.
 TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
   const auto counters = [](float scale) {
-    SurfaceTrace scene(1, 1);
-    TextureImage image = filled_image(2, 2, {9, 9, 9, 200});
-    image.texels[0].a = 0;
-    scene.add_rectangle(-20, -1, 2, 2, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+    SurfaceTrace scene = one_pixel(AlphaMode::mask);
     for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= scale;
     const Masked found = masked(ShadedScene(scene.trace));
     EXPECT_EQ(found.after.size(), 1u);

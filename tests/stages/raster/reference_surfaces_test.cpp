@@ -67,12 +67,11 @@ TEST(ReferenceSurfaces, AConstantTextureIsTheFlatColor) {
 
 // Texels far smaller than a pixel, black and white in turn: the mean is half the light, whatever the encoding.
 TEST(ReferenceSurfaces, AFineCheckerIsTheMeanInLinearLight) {
-  SurfaceTrace scene(4, 4);
   TextureImage image = filled_image(256, 256, {255, 255, 255, 255});
   for (std::size_t i = 0; i < image.texels.size(); ++i)
     if ((i + i / 256) % 2) image.texels[i] = {0, 0, 0, 255};
-  scene.add_rectangle(0, 0, 4, 4, 0.5, textured_material(scene.add_image(image)));
-  for (const glm::vec4& pixel : picture(scene.trace)) EXPECT_NEAR(pixel.r, 0.5, 0.003);  // an 8-bit code
+  for (const glm::vec4& pixel : picture(full_of(image, AlphaMode::opaque, 4).trace))
+    EXPECT_NEAR(pixel.r, 0.5, 0.003);  // an 8-bit code
 }
 
 // Alpha falls linearly with the distance from the middle and is half a code above the cutoff on the circle.

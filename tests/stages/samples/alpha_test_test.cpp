@@ -13,11 +13,8 @@ struct Tested {
 };
 
 SurfaceTrace halves(AlphaMode mode) {
-  SurfaceTrace scene(8, 8);
-  const TextureImage image{"halves", 2, 1, {{255, 255, 255, 0}, {255, 255, 255, 160}}};
-  Material material = textured_material(scene.add_image(image), mode);
-  material.base_texture->magnify = Filter::nearest;
-  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  SurfaceTrace scene = full_of({"halves", 2, 1, {{255, 255, 255, 0}, {255, 255, 255, 160}}}, mode);
+  scene.base_texture().magnify = Filter::nearest;
   return scene;
 }
 

@@ -215,25 +215,32 @@ TEST(OrderedTest, DepthsAreLimited) {
 // and whose samples are numbers 2 and 3 of the pixel.
 const Sampling kHalves{CellGrid{2, 1}, standard_pattern(2)};
 
-PixelObservers observers_of_pixel_1() {
-  PixelObservers observers(2);
-  observers[1] = std::make_unique<PixelObserver>();
-  observers[1]->add_positions(std::vector<glm::vec2>(4));
-  return observers;
-}
+struct Halves {
+  OrderedTile surface{kTile, 4, 0.0f, false, glm::vec4(0.0f)};
+  PixelObservers observers{2};
+  std::vector<OrderedAccess> accesses;
+  StageCounters counters;
+
+  Halves() {
+    observers[1] = std::make_unique<PixelObserver>();
+    observers[1]->add_positions(std::vector<glm::vec2>(4));
+    surface.color_bytes = 8, surface.observers = &observers;
+  }
+  void test(const Draws& draws, std::vector<SampleFragment> fragments) {
+    ordered_test({draws.triangles, kTile, kHalves}, draws.rules(), counters, surface, fragments, accesses);
+  }
+  const std::vector<HistoryFragment>& seen() const { return observers[1]->history.fragments; }
+};
 
 TEST(OrderedTest, CellsHaveTheirPlaceInThePixel) {
   Draws draws;
   add_triangle(draws.triangles, {-1024, -1024, -2}, {2048, -1024, 1}, {-1024, 2048, -2});  // x / 4 - 1, in pixels
   draws.triangles.draws = {0};
   draws.frame.draws.emplace_back();
-  OrderedTile surface(kTile, 4, 0.0f, false, glm::vec4(0.0f));
-  std::vector<SampleFragment> left = {{0, 0, 3, 0, 3}};
-  std::vector<OrderedAccess> accesses;
-  StageCounters counters;
-  ordered_test({draws.triangles, kTile, kHalves}, draws.rules(), counters, surface, left, accesses);
+  Halves found;
+  found.test(draws, {{0, 0, 3, 0, 3}});
   for (std::size_t s = 0; s < 2; ++s)
-    EXPECT_NEAR(surface.depth[6 + s], (1.5 + static_cast<double>(kHalves.pattern.x[s]) / 256) / 4 - 1, 1e-6) << s;
+    EXPECT_NEAR(found.surface.depth[6 + s], (1.5 + static_cast<double>(kHalves.pattern.x[s]) / 256) / 4 - 1, 1e-6) << s;
 }
 
 TEST(OrderedTest, ObserversSeeWhatFails) {
@@ -241,34 +248,23 @@ TEST(OrderedTest, ObserversSeeWhatFails) {
   draws.add(-0.5f), draws.add(-0.25f), draws.add(-0.75f);
   for (SampleFragment& fragment : draws.fragments) fragment.x = 3;
   draws.fragments[2].mask = 1;
-  OrderedTile surface(kTile, 4, 0.0f, false, glm::vec4(0.0f));
-  const PixelObservers observers = observers_of_pixel_1();
-  surface.observers = &observers;
-  std::vector<OrderedAccess> accesses;
-  StageCounters counters;
-  ordered_test({draws.triangles, kTile, kHalves}, draws.rules(), counters, surface, draws.fragments, accesses);
-  const std::vector<HistoryFragment>& seen = observers[1]->history.fragments;
-  ASSERT_EQ(seen.size(), 3u);
-  EXPECT_EQ(seen[0].mask, std::vector<bool>(4));
-  EXPECT_EQ(seen[1].mask, (std::vector<bool>{false, false, true, true})) << "behind";
-  EXPECT_EQ(seen[2].mask, std::vector<bool>(4));
+  Halves found;
+  found.test(draws, draws.fragments);
+  ASSERT_EQ(found.seen().size(), 3u);
+  EXPECT_EQ(found.seen()[0].mask, std::vector<bool>(4));
+  EXPECT_EQ(found.seen()[1].mask, (std::vector<bool>{false, false, true, true})) << "behind";
+  EXPECT_EQ(found.seen()[2].mask, std::vector<bool>(4));
 }
 
 TEST(OrderedBlend, ObserversSeeWhichSamplesAreBlended) {
   Draws draws;
   draws.add(-0.5f, 2);
   draws.fragments[0].x = 3;
-  OrderedTile surface(kTile, 4, 0.0f, false, glm::vec4(0.0f));
-  surface.color_bytes = 8;
-  const PixelObservers observers = observers_of_pixel_1();
-  surface.observers = &observers;
-  std::vector<OrderedAccess> accesses;
-  StageCounters counters;
-  ordered_blend({draws.triangles, kTile, kHalves}, draws.rules(), {draws.fragments, {glm::vec4(1)}}, counters, surface,
-                accesses);
-  const std::vector<HistoryFragment>& seen = observers[1]->history.fragments;
-  ASSERT_EQ(seen.size(), 1u);
-  EXPECT_EQ(seen[0].mask, (std::vector<bool>{false, false, false, true}));
+  Halves found;
+  ordered_blend({draws.triangles, kTile, kHalves}, draws.rules(), {draws.fragments, {glm::vec4(1)}}, found.counters,
+                found.surface, found.accesses);
+  ASSERT_EQ(found.seen().size(), 1u);
+  EXPECT_EQ(found.seen()[0].mask, (std::vector<bool>{false, false, false, true}));
 }
 
 struct Blended {

@@ -32,52 +32,31 @@ std::string chained(const std::string& text, int first, int end) {
   return all;
 }
 
+// %fun@, of so many instructions.
+std::string function_text(const std::string& instructions) {
+  return "%fun@ = OpFunction %void None %action\n%start@ = OpLabel\n" + instructions + "OpReturn\nOpFunctionEnd\n";
+}
+// %fun`first` to %fun`end - 1`, each of which calls the next one.
+std::string functions_that_call_the_next(int first, int end) {
+  return chained(function_text("%call@ = OpFunctionCall %void %fun#\n"), first + 1, end + 1);
+}
+
 TEST(SpirvLimits, FunctionsThatCallThemselves) {
-  const std::string function = R"(
-%fun0 = OpFunction %void None %action
-%start0 = OpLabel
-%call0 = OpFunctionCall %void %fun1
-OpReturn
-OpFunctionEnd
-)";
+  const std::string first = functions_that_call_the_next(0, 1);
   // In a cycle, and from no live code.
-  EXPECT_EQ(error_of({.body = "", .functions = function + R"(
-%fun1 = OpFunction %void None %action
-%start1 = OpLabel
-%call1 = OpFunctionCall %void %fun0
-OpReturn
-OpFunctionEnd
-)"}),
+  EXPECT_EQ(error_of({.body = "",
+                      .functions = first + chained(function_text("%call@ = OpFunctionCall %void %fun0\n"), 2, 3)}),
             "a function of the shader calls itself");
-  EXPECT_EQ(error_of({.body = "%call = OpFunctionCall %void %fun0\n", .functions = function + R"(
-%fun1 = OpFunction %void None %action
-%start1 = OpLabel
-%call1 = OpFunctionCall %void %fun1
-OpReturn
-OpFunctionEnd
-)"}),
+  EXPECT_EQ(error_of({.body = "%call = OpFunctionCall %void %fun0\n",
+                      .functions = first + chained(function_text("%call@ = OpFunctionCall %void %fun1\n"), 2, 3)}),
             "a function of the shader calls itself");
 }
 
 // Each function calls the next one.
 ShaderParts chain_of_calls(int functions) {
   return {.body = "%call = OpFunctionCall %void %fun0\n",
-          .functions = chained(R"(
-%fun@ = OpFunction %void None %action
-%start@ = OpLabel
-%call@ = OpFunctionCall %void %fun#
-OpReturn
-OpFunctionEnd
-)",
-                               1, functions) +
-                       chained(R"(
-%fun@ = OpFunction %void None %action
-%start@ = OpLabel
-OpStore %iout %u1111
-OpReturn
-OpFunctionEnd
-)",
-                               functions, functions + 1)};
+          .functions = functions_that_call_the_next(0, functions - 1) +
+                       chained(function_text("OpStore %iout %u1111\n"), functions, functions + 1)};
 }
 
 TEST(SpirvLimits, LongChainsOfCalls) {
@@ -89,22 +68,10 @@ TEST(SpirvLimits, LongChainsOfCalls) {
 
 // 2^20 calls of the last function.
 TEST(SpirvLimits, FunctionsThatCallTheNextOneTwice) {
+  const std::string twice =
+      function_text("%call@ = OpFunctionCall %void %fun#\n%again@ = OpFunctionCall %void %fun#\n");
   EXPECT_EQ(error_of({.body = "%call = OpFunctionCall %void %fun0\n",
-                      .functions = chained(R"(
-%fun@ = OpFunction %void None %action
-%start@ = OpLabel
-%call@ = OpFunctionCall %void %fun#
-%again@ = OpFunctionCall %void %fun#
-OpReturn
-OpFunctionEnd
-)",
-                                           1, 21) +
-                                   R"(
-%fun20 = OpFunction %void None %action
-%start20 = OpLabel
-OpReturn
-OpFunctionEnd
-)"}),
+                      .functions = chained(twice, 1, 21) + chained(function_text(""), 21, 22)}),
             "expected at most 4096 blocks of a function, with those that it calls");
 }
 

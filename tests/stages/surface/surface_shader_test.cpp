@@ -13,13 +13,10 @@ namespace beampipe::surface_shader_test {
 
 // A rectangle of 8 x 8 pixels whose red is linear in u: a gradient of 8 texels, as seen at 1 texel per pixel.
 SurfaceTrace gradient() {
-  SurfaceTrace scene(8, 8);
   TextureImage image{"gradient", 8, 1, {}};
   for (int i = 0; i < 8; ++i) image.texels.emplace_back(0, 0, 0, 32 * i);
-  Material material = textured_material(scene.add_image(image));
-  material.base_texture->wrap_u = Wrap::clamp;
-  material.alpha_mode = AlphaMode::blend;  // alpha is stored as it is
-  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  SurfaceTrace scene = full_of(image, AlphaMode::blend);  // alpha is stored as it is
+  scene.base_texture().wrap_u = Wrap::clamp;
   return scene;
 }
 
@@ -98,9 +95,8 @@ TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
 
 // On a plane that faces the camera, texture coordinates are linear, so analytic slopes and quad differences agree.
 TEST(SurfaceShader, DerivativesAgreeOnAPlaneThatFacesTheCamera) {
-  SurfaceTrace scene(16, 16);
   Random random(1);
-  scene.add_rectangle(0, 0, 16, 16, 0.5, textured_material(scene.add_image(random_image(random, 64, 64))));
+  const SurfaceTrace scene = full_of(random_image(random, 64, 64), AlphaMode::opaque, 16);
   const Footprint square, skewed(0.9f, 0.4f, 0.5f);
   for (const int taps : {ShadingRules{}.texture_taps, 16}) {
     const ShadedScene analytic(scene.trace, {.texture_taps = taps}),
@@ -336,11 +332,8 @@ TEST(SurfaceShader, ScaleOfNormalMaps) {
 // ---- Materials
 
 TEST(SurfaceShader, VertexColorsAndTexturesMultiplyTheBaseColor) {
-  SurfaceTrace scene(8, 8);
-  const std::uint32_t image = scene.add_image(filled_image(4, 4, {255, 188, 0, 128}));
-  Material material = textured_material(image, AlphaMode::blend);
-  material.base_color = {0.5f, 0.25f, 1, 0.5f};
-  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  SurfaceTrace scene = full_of(filled_image(4, 4, {255, 188, 0, 128}), AlphaMode::blend);
+  scene.trace.materials[0].base_color = {0.5f, 0.25f, 1, 0.5f};
   scene.mesh().vertex_colors.assign(4, glm::vec4(0.25f, 1, 1, 0.5f));
   const ShadedScene shaded(scene.trace);
   const glm::vec4 found = shaded.shader.color_and_alpha(0, {5, 2});
@@ -385,8 +378,7 @@ TEST(SurfaceShader, AGBufferRounds) {
 }
 
 TEST(SurfaceShader, ColorsAreRoundedToHalf) {
-  SurfaceTrace scene(8, 8);
-  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(filled_image(2, 2, {100, 200, 30, 255}))));
+  const SurfaceTrace scene = full_of(filled_image(2, 2, {100, 200, 30, 255}));
   const ShadedScene exact(scene.trace), half(scene.trace, {.stored_as = AccumulatorFormat::fp16});
   const glm::vec3 a = exact.shader.color(0, {3, 4}), b = half.shader.color(0, {3, 4});
   for (int c = 0; c < 3; ++c) {
@@ -505,8 +497,7 @@ OperationCounts sum_of(const std::vector<std::pair<OperationCounts, int>>& parts
 }
 
 TEST(SurfaceShaderCost, OfAnUnlitTexture) {
-  SurfaceTrace scene(8, 8);
-  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(filled_image(2, 2, {1, 2, 3, 255}))));
+  const SurfaceTrace scene = full_of(filled_image(2, 2, {1, 2, 3, 255}));
   const ShadedScene analytic(scene.trace), quad(scene.trace, {.derivatives = Derivatives::quad});
   const OperationCounts texel{.mul_add = 4, .fetch = 1};
   EXPECT_EQ(analytic.shader.work(0).material,

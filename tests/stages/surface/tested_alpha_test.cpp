@@ -11,10 +11,8 @@
 namespace beampipe::tested_alpha_test {
 
 TextureImage noise(std::uint32_t width, std::uint32_t height) {
-  TextureImage image = filled_image(width, height, {255, 255, 255, 255});
   Random random(7);
-  for (glm::u8vec4& texel : image.texels) texel.a = static_cast<std::uint8_t>(random.word());
-  return image;
+  return image_with_alphas(width, height, [&](std::size_t) { return random.word(); });
 }
 
 // Against tests at many points with the filter that pictures use. 64 places in a texel are within 0.05 here.
