@@ -53,6 +53,17 @@ void expect_invariants(const MergeFragment& fragment, const Aggregate& old, cons
   }
 }
 
+// A slab of thickness 0.4 around depth -0.5 reaches from -0.7 to -0.3; the depths that it was made of reach less far.
+TEST(MergeRules, TheDepthRangeLimitsTheEndsOfASlab) {
+  const Aggregate of = slab(-0.5f, 0.4f, -0.6f, -0.45f);
+  const SlabEnds<float> limited = slab_ends(of, -0.5f, {.extents = MergeRules::Extents::range});
+  EXPECT_EQ(limited.front, -0.6f);
+  EXPECT_EQ(limited.back, -0.45f);
+  const SlabEnds<float> free = slab_ends(of, -0.5f, {.extents = MergeRules::Extents::slab});
+  EXPECT_FLOAT_EQ(free.front, -0.7f);
+  EXPECT_FLOAT_EQ(free.back, -0.3f);
+}
+
 TEST(MergeRules, InvariantsOnChains) {
   Random random(43);
   for (const MergeRules& rules : every_merge_rule())
