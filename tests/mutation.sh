@@ -449,6 +449,10 @@ for mutant in "${mutants[@]}"; do
 done
 [[ $stale == 0 && ${1:-} != --check ]] || exit $stale
 
+if [[ $(git status --porcelain) ]]; then
+  echo "mutation.sh: expected a tree without changes, since results are a commit's" >&2
+  exit 1
+fi
 build=${1:-build/release}
 only=" ${*:2} "
 results=$build/mutants.txt
@@ -494,7 +498,7 @@ for mutant in "${mutants[@]}"; do
   noticed=
   before=$(grep -F -- "$mutant: " "$build/noticed.txt" 2>/dev/null | tail -1 || true)
   read -r program test <<<"${before##*: }"
-  [[ $test != *.* ]] || build_and_run "${program%_tests}" "$test"
+  [[ $test != *.* || " ${folders[*]} " != *" ${program%_tests} "* ]] || build_and_run "${program%_tests}" "$test"
   for folder in "${folders[@]}"; do
     [[ $noticed ]] || build_and_run "$folder"
   done

@@ -12,7 +12,7 @@ build=(
   libcli11-dev nlohmann-json3-dev
   libsqlite3-dev
   spirv-tools spirv-headers  # reads the shaders of captured programs
-  libboost-dev  # only headers: exact arithmetic, sockets
+  libboost-dev  # only headers: exact arithmetic
   node-d3       # D3, which becomes part of the report page
   pybind11-dev python3-dev python3-numpy  # the Python module
   python3-matplotlib                      # `beampipe figure`

@@ -35,7 +35,8 @@ struct Items {
   }
 };
 
-std::vector<std::uint32_t> twin(const Items& items, const SamplePattern& pattern, Samples& samples) {
+// `ties`: becomes larger by the samples whose depth is the stored one.
+std::vector<std::uint32_t> twin(const Items& items, const SamplePattern& pattern, Samples& samples, int& ties) {
   std::vector<std::uint32_t> passed;
   for (std::size_t n = 0; n < items.accesses.size(); ++n) {
     const SampleAccess& item = items.accesses[n];
@@ -45,7 +46,9 @@ std::vector<std::uint32_t> twin(const Items& items, const SamplePattern& pattern
       float depth = 0;
       if (!(item.tested >> s & 1)) continue;
       const auto x = static_cast<float>(pattern.x[s]), y = static_cast<float>(pattern.y[s]);
-      if (!depth_test_scalar(items.planes[n], x, y, samples.depth[i], depth)) continue;
+      const bool passes = depth_test_scalar(items.planes[n], x, y, samples.depth[i], depth);
+      ties += depth == samples.depth[i];
+      if (!passes) continue;
       samples.depth[i] = depth;
       samples.triangle[i] = item.triangle;
       passed.back() |= 1u << s;
@@ -65,6 +68,7 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
   Random random(51);
   constexpr float kSlopes[] = {0.0f, 0.0f, 1.0f / 4096, -1.0f / 4096, 1e-5f};
   constexpr std::size_t kCells = 7;
+  int ties = 0;
   for (int count = 1; count <= kMaxMaskSamples; ++count) {
     SamplePattern pattern;
     pattern.count = count;
@@ -78,7 +82,7 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
                 {random.one_in(2) ? -0.5f : random.real32(-1, 0), random.pick(kSlopes), random.pick(kSlopes)});
     }
     Samples expected = cleared(kCells, pattern);
-    const std::vector<std::uint32_t> expected_passes = twin(items, pattern, expected);
+    const std::vector<std::uint32_t> expected_passes = twin(items, pattern, expected, ties);
     on_every_target([&] {
       Samples found = cleared(kCells, pattern);
       const SampleCounts counts = items.test(pattern, found);
@@ -88,6 +92,7 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
       ASSERT_TRUE(found == expected) << count << " samples";
     });
   }
+  EXPECT_GT(ties, 100);
 }
 
 }  // namespace beampipe::depth_compare_test

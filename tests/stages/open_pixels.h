@@ -22,6 +22,7 @@ std::vector<Fragment> fragments_in_order(const SetupTriangles& triangles, const 
   return fragments;
 }
 
+// A colour for each triangle, whose channels lie from `least` to `greatest`.
 inline std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& random, double least = 0,
                                             double greatest = 1) {
   std::vector<glm::vec3> colors;
@@ -30,6 +31,7 @@ inline std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Ran
   return colors;
 }
 
+// `tolerance`: of alpha and of each channel.
 inline void expect_pixel(const PixelColor& found, double alpha, const glm::dvec3& color, double tolerance) {
   EXPECT_NEAR(found.alpha, alpha, tolerance);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.color[c], color[c], tolerance) << "channel " << c;

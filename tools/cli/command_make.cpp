@@ -17,6 +17,7 @@
 #include "traces/files/model_import.h"
 #include "traces/files/trace_io.h"
 #include "traces/scenes.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -111,8 +112,8 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
     gate.set_unfinished({AtomicFile::temporary_of(file), AtomicFile::temporary_of(arrays_file_of(file))});
   }
   write_trace(trace, file, arguments.binary ? ArrayStorage::binary : ArrayStorage::text);
-  std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "
-            << arguments.options.height << " pixels\n";
+  std::cout << arguments.output << ": " << triangles << " triangles, "
+            << size_text(arguments.options.width, arguments.options.height) << " pixels\n";
   if (is_model && camera) std::cout << "camera: " << text_of(*camera, arguments.model, command) << "\n";
 }
 

@@ -14,6 +14,7 @@
 #include "tools/files/output.h"
 #include "traces/files/model_import.h"
 #include "traces/files/trace_io.h"
+#include "traces/size_text.h"
 
 namespace beampipe {
 namespace {
@@ -72,7 +73,7 @@ void preview(const PreviewArguments& arguments, const Command& command, Interrup
   OutputFolder output(file.parent_path(), gate);
   output.write(file.filename(), encode_png(technique.render(trace, arguments.frame, options).image));
   output.keep();
-  std::cout << arguments.output << ": " << frame.width << " x " << frame.height << " pixels\n";
+  std::cout << arguments.output << ": " << size_text(frame.width, frame.height) << " pixels\n";
   if (frame.camera) std::cout << "camera: " << text_of(*frame.camera, arguments.model, command) << "\n";
 }
 

@@ -32,8 +32,8 @@ struct RunArguments {
 // `arguments` must live until the command line is parsed.
 void add_run_arguments(Command& command, RunArguments& arguments);
 
-// Reads the trace, chooses the instruction set and connects with the viewer. Throws UsageError, SpecError, TraceError,
-// or std::runtime_error if a frame needs more memory than the machine has or the viewer does not answer.
+// Reads the trace and chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error if a
+// frame needs more memory than the machine has.
 RunPlan make_plan(const RunArguments& arguments);
 
 // The full name of a file that an option names, which must be neither the trace nor in the output folder. `option`:

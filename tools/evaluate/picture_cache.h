@@ -1,4 +1,4 @@
-// Pictures that take long to render and that many runs need again: those of the reference, and of the MSAA ladder.
+// Pictures of the reference, which take long to render and which many runs need again.
 //
 // A folder has two files for each: KEY.exr, and KEY.json with what made it, its counters, and digests of both files.
 // KEY is a digest of all that a picture depends on: the program, the trace with its frames' sizes, the frame, the

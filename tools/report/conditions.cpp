@@ -20,7 +20,7 @@ std::string counted(std::uint64_t number, const std::string& one) {
   return grouped(number) + " " + one + (number == 1 ? "" : "s");
 }
 
-std::string size_text(std::uint64_t bytes) {
+std::string bytes_text(std::uint64_t bytes) {
   char text[32];
   if (bytes >= 1 << 20)
     std::snprintf(text, sizeof text, "%.4g MiB", static_cast<double>(bytes) / (1 << 20));
@@ -58,7 +58,7 @@ std::string hardware_text(const Json& report) {
 
 std::string memory_text(const Json& memory) {
   if (!memory.at("modelled").get<bool>()) return "not modelled";
-  const auto size = [&](const char* key) { return size_text(memory.at(key).get<std::uint64_t>()); };
+  const auto size = [&](const char* key) { return bytes_text(memory.at(key).get<std::uint64_t>()); };
   const std::string side = memory.at("bin_pixels").dump();
   return "L2 " + size("l2_bytes") + ", L1 " + size("l1_bytes") + ", ROP caches " + size("rop_bytes") + ", sectors of " +
          memory.at("sector_bytes").dump() + " bytes, compression " +

@@ -274,6 +274,9 @@ TEST(Compose, PlainOver) {
   EXPECT_NEAR(found.color[0], 0.375 / 4, 1e-6);
   EXPECT_NEAR(found.alpha, 0.5 + 0.125 + 0.09375, 1e-6);
   EXPECT_EQ(counters.items_in, 3u);
+  // Per merge: 1 - alpha; a product and a sum each for alpha and three channels; the channels are converted from fp16
+  // and back.
+  EXPECT_EQ(counters.ops, (OperationCounts{.mul_add = 3 * 4, .add = 3 * 5, .convert = 3 * 6}));
 }
 
 }  // namespace beampipe::compose_casav_test

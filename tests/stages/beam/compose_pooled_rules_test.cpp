@@ -102,6 +102,13 @@ TEST(PooledRules, ANearSurfaceHidesAFarOne) {
   }
 }
 
+TEST(PooledRules, AnEdgeInTheMiddleHasHalfThePixel) {
+  SetupTriangles triangles = triangles_of({left_of(128, -0.5f)});
+  const std::vector<glm::vec3> colors{kRed};
+  OpenTile<8, 2> tile(triangles, colors);
+  expect_pixel(tile.compose({0}).at(0), 0.5, 0.5 * glm::dvec3(kRed), 1e-7);
+}
+
 TEST(PooledRules, AnEdgeOverASurface) {
   SetupTriangles triangles = triangles_of({everywhere(-0.25f), left_of(78, -0.75f)});
   const std::vector<glm::vec3> colors{kGreen, kRed};

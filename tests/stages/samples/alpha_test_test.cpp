@@ -55,7 +55,7 @@ TEST(AlphaTest, TheCutoffItselfPasses) {
   }
 }
 
-// 160 / 255 of 8 samples is 5.02, which is 5 or 6 of them. Of hashes, pixels take others.
+// 160 / 255 of 8 samples is 5.02, which is 5 or 6 of them. By hashes, pixels take different samples.
 TEST(AlphaTest, CoverageAndHashesTakeThePartOfTheSamples) {
   const ShadedScene scene(halves(AlphaMode::mask).trace);
   for (const AlphaCoverage coverage : {AlphaCoverage::to_coverage, AlphaCoverage::hashed}) {

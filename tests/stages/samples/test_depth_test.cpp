@@ -148,13 +148,16 @@ TEST(DepthTestStage, CrossingPlanesAreComparedAtTheSamples) {
 }
 
 // TwinCounts count operations.
-TEST(DepthTestStage, CountsBytes) {
+TEST(DepthTestStage, CountsOperationsAndBytes) {
   SetupTriangles triangles = triangles_of({
       everywhere(-0.5f),
       everywhere(-0.25f)  // hidden
   });
   const Tested found = render(triangles, kMsaa8);
-  const std::uint64_t samples = kTile.pixels() * 8;
+  const std::uint64_t samples = kTile.pixels() * 8, fragments = 2 * kTile.pixels();
+  EXPECT_EQ(found.counters.ops, (OperationCounts{.mul_add = 2 * 2 * samples + 4 * fragments,
+                                                 .add = 2 * 3 * samples + 4 * fragments,
+                                                 .convert = 3 * fragments}));
   EXPECT_EQ(found.counters.bytes_read, 2 * samples * 4 + 2 * kTile.pixels() * 10);
   EXPECT_EQ(found.counters.bytes_written, samples * (4 + 6));
 }

@@ -179,8 +179,7 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                               repeated("%case# = OpLabel\nOpStore %x# %u2_\nOpBranch %after\n", 0, 1000) +
                               "%after = OpLabel\n%sum0 = OpLoad %uint %x0\n" +
                               chained("%y# = OpLoad %uint %x#\n%sum# = OpIAdd %uint %sum@ %y#\n", 1, 1000) +
-                              "%r = OpCompositeConstruct %u4 %sum999 %sum999 %sum999 %sum999\nOpStore %iout %r\n",
-                      .globals = ""}),
+                              "%r = OpCompositeConstruct %u4 %sum999 %sum999 %sum999 %sum999\nOpStore %iout %r\n"}),
             "expected at most 524288 ways between blocks, times variables that change");
   // One variable with as many parts, in 600 cases.
   const auto table_with = [](const std::string& row) {
@@ -195,7 +194,7 @@ TEST(SpirvLimits, VariablesThatDependOnTheWay) {
                        .globals =
                            "%ten = OpConstant %uint 10\n%hundred = OpConstant %uint 100\n"
                            "%row = OpTypeArray %uint %hundred\n%table_type = OpTypeArray %row " +
-                           row + "\n%to_table = OpTypePointer Function %table_type\n" + ""};
+                           row + "\n%to_table = OpTypePointer Function %table_type\n"};
   };
   EXPECT_EQ(error_of(table_with("%ten")), "expected at most 524288 ways between blocks, times variables that change");
   EXPECT_EQ(error_of(table_with("%u3_")), "no error");

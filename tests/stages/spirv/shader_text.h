@@ -153,7 +153,7 @@ OpFunctionEnd
 }
 
 // A loop of which %goes_on is known once `check` has been run. `phis`: numbers from turn to turn, from %entry or
-// %again.
+// %again. `turn`: what ends each turn.
 inline std::string loop_text(const std::string& phis, const std::string& check, const std::string& turn) {
   return "OpBranch %header\n%header = OpLabel\n" + phis + check +
          "OpLoopMerge %after %again None\nOpBranchConditional %goes_on %again %after\n%again = OpLabel\n" + turn +

@@ -45,7 +45,7 @@ std::vector<glm::vec2> vectors(const SampleTile& surface, const Frame& now, cons
 
 const glm::dmat4 kIdentity(1.0);
 
-// Where a point was that is now at (x, y) from the frame's middle, y up.
+// before(i, at): where the point was that pixel i shows at `at` now; both in pixels from the frame's middle, y up.
 template <class Before>
 void expect_moved(const std::vector<glm::vec2>& found, Before&& before) {
   ASSERT_EQ(found.size(), kTile.pixels());

@@ -167,6 +167,7 @@ TEST_F(ViewTest, FramesWithoutACameraRefuse) {
   };
   expect_error(with({"--width", "33", "--height", "100"}), 1,
                "trace.json: cannot be 33 x 100 pixels: expected frames that name a camera");
+  expect_error(with({"--width", "41", "--height", "24"}), 1, "trace.json: cannot be 41 x 24 pixels");
   expect_error(with({"--camera", path("camera.json")}), 1,
                "frame 0 cannot have another camera: expected a frame that names one, found matrices");
   write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9], "traget": [1, 1, 0]})");
