@@ -1,5 +1,6 @@
 // Lanes that go different ways: programs of nested selections, loops and switches against an interpreter of one lane.
 #include "tests/stages/spirv/shader_text.h"
+#include "tests/thorough.h"
 
 namespace beampipe {
 namespace {
@@ -246,7 +247,7 @@ class Assembler {
 
 TEST(SpirvFlow, RandomProgramsDoWhatAnInterpreterDoes) {
   std::size_t ended = 0, discarded = 0, most_blocks = 0;
-  for (std::uint32_t seed = 0; seed < 80; ++seed) {
+  for (std::uint32_t seed = 0; seed < 80u * static_cast<unsigned>(thoroughness()); ++seed) {
     SCOPED_TRACE(seed);
     const Body body = Writer(seed).body(4, false);
     TestShader shader(Assembler().parts(body));
