@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Prints which lines and branches of stages/ and simd/ the tests reach.
 
-    cmake --preset coverage && cmake --build --preset coverage --target simd_tests stages_tests pipeline_tests
-    tests/coverage.py build/coverage [simd stages pipeline]
+    cmake --preset coverage && cmake --build --preset coverage --target {simd,stages,spirv,programs,pipeline}_tests
+    tests/coverage.py build/coverage [simd stages spirv programs pipeline]
 
-runs those tests (all three, or the named ones) and prints a table. Clang counts how often each condition of the source
+runs those tests (all, or the named ones) and prints a table. Clang counts how often each condition of the source
 is true and false. A kernel is compiled for several instruction sets, and a template for several types; a line or branch
 counts as reached if it is reached in one of them. For each branch that no test takes, the table names its line and
 column and which way is open, T or F. Conditions that are known to the compiler do not count.
@@ -18,6 +18,7 @@ import subprocess
 import sys
 
 FOLDERS = ("simd", "stages")
+TESTS = ("simd", "stages", "spirv", "programs", "pipeline")
 
 
 def tool(name):
@@ -29,7 +30,7 @@ def tool(name):
 def main(build, *tests):
     build = pathlib.Path(build).resolve()
     source = build.parent.parent
-    programs = [build / "tests" / f"{folder}_tests" for folder in tests or ("simd", "stages", "pipeline")]
+    programs = [build / "tests" / f"{folder}_tests" for folder in tests or TESTS]
     profiles = []
     for program in programs:
         profiles.append(build / f"{program.name}.profraw")

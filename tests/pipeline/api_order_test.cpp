@@ -345,7 +345,7 @@ TEST(ApiOrder, MultisamplingFollowsRandomStreams) {
   EXPECT_GT(by_depth, streams / 20) << "frames that are drawn by depth count too";
 }
 
-TEST(ApiOrder, TheReferenceFollowsRandomStreams) {
+TEST(ApiOrder, TheReferenceAndBeamFollowRandomStreams) {
   const int streams = 25 * thoroughness();
   for (int seed = 0; seed < streams; ++seed) {
     Random random(static_cast<unsigned>(seed) + 1000000);
@@ -360,6 +360,7 @@ TEST(ApiOrder, TheReferenceFollowsRandomStreams) {
     });
     // The triangles of a box have different depths, so pixels at a diagonal differ.
     const Image image = render_unmodelled("reference", stream.trace).image;
+    const Image beam = render_unmodelled("beam", stream.trace).image;
     const double clear_depth = stream.clear_depth();
     for (std::uint32_t y = 0; y < kSize; ++y) {
       for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -376,10 +377,12 @@ TEST(ApiOrder, TheReferenceFollowsRandomStreams) {
               is_whole && part(1, 1) == part(254, 1) && part(1, 1) == part(1, 254) && part(1, 1) == part(254, 254);
         }
         if (!is_whole) continue;
-        for (std::size_t c = 0; c < 3; ++c)
-          ASSERT_NEAR(image.rgba[4 * (y * kSize + x) + c], expected[static_cast<int>(c)],
-                      1e-5 * std::max(1.0, std::abs(expected[static_cast<int>(c)])))
-              << x << ", " << y << ", channel " << c;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double wanted = expected[static_cast<int>(c)], scale = std::max(1.0, std::abs(wanted));
+          ASSERT_NEAR(image.rgba[4 * (y * kSize + x) + c], wanted, 1e-5 * scale) << x << ", " << y << ", channel " << c;
+          ASSERT_NEAR(beam.rgba[4 * (y * kSize + x) + c], wanted, 1e-5 * scale)
+              << "beam at " << x << ", " << y << ", channel " << c << ", seed " << seed;
+        }
       }
     }
   }
