@@ -22,6 +22,7 @@ capture=(
   renderdoc python3-renderdoc python3-numpy
   python3-pil  # compressed textures
   mesa-vulkan-drivers libgl1-mesa-dri xvfb  # to capture without a GPU and a display
+  mesa-utils   # glxgears, the example
 )
 test=(
   chromium chromium-driver python3  # tests of the report page
@@ -35,7 +36,7 @@ test=(
   clang libclang-rt-dev             # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones
   "${capture[@]}"
-  vulkan-tools mesa-utils glmark2-es2-x11  # programs to capture
+  vulkan-tools glmark2-es2-x11  # programs to capture
 )
 
 case ${1:-} in

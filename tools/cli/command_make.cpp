@@ -9,6 +9,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/model_trace.h"
 #include "tools/cli/trace_view.h"
+#include "tools/files/format.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "traces/closed_mesh.h"
@@ -112,7 +113,7 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
     gate.set_unfinished({AtomicFile::temporary_of(file), AtomicFile::temporary_of(arrays_file_of(file))});
   }
   write_trace(trace, file, arguments.binary ? ArrayStorage::binary : ArrayStorage::text);
-  std::cout << arguments.output << ": " << triangles << " triangles, "
+  std::cout << arguments.output << ": " << with_noun(triangles, "triangle") << ", "
             << size_text(arguments.options.width, arguments.options.height) << " pixels\n";
   if (is_model && camera) std::cout << "camera: " << text_of(*camera, arguments.model, command) << "\n";
 }

@@ -46,7 +46,8 @@ void say_not_read(const std::string& model, const NotRead& not_read) {
 void say_standpoint(const std::string& model, Standpoint standpoint, bool lit) {
   if (standpoint == Standpoint::outside) return;
   const bool is_inside = standpoint == Standpoint::inside;
-  std::cerr << "beampipe: note: " << model << ": the walls show their backs outside, so the camera "
+  std::cerr << "beampipe: note: " << model
+            << ": its faces show their backs outside, as the walls of a room do, so the camera "
             << (is_inside ? "stands inside" : "looks in through an open side") << (lit ? ", with --ambient 0.35" : "")
             << "; move it with --eye and --target, or with --view " << (is_inside ? "outside" : "inside") << "\n";
 }

@@ -115,6 +115,12 @@ void require_ended_channels(const std::filesystem::path& file) {
   }
 }
 
+void require_no_png(const std::filesystem::path& file) {
+  std::string start(4, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), 4);
+  if (start == "\x89PNG") throw std::runtime_error("it is a PNG; `run` and `compare` write the EXR beside it");
+}
+
 // How many uncompressed bytes one byte of a file can stand for: up to 1032 in deflate (RFC 1951: a match of 258 bytes
 // in 2 bits), fewer in RLE, PIZ and B44. DWA can shrink a flat block of 64 pixels once more by such a factor. A picture
 // of more than 64 MiB is accepted only if it is not as flat as that.
@@ -157,6 +163,7 @@ auto read_file(const std::filesystem::path& file, Load load) {
     if (!std::filesystem::exists(file, ignored)) throw std::runtime_error("no such file");
     if (!std::filesystem::is_regular_file(file, ignored)) throw std::runtime_error("not a file");
     Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // must be set before the library allocates what a header claims
+    require_no_png(file);
     require_sound_header(file);
     require_ended_channels(file);
     Imf::InputFile input(file.c_str());

@@ -191,8 +191,9 @@ std::string fragments_text(const PixelInspection& inspection) {
   std::vector<std::uint32_t> owned(history.fragments.size());
   for (const std::uint32_t owner : history.owners)
     if (owner != kNobody) ++owned[owner];
-  std::string text = format("Fragments\n  %4s %9s  %-20s %9s %10s %10s %7s %6s  %s\n", "#", "triangle", "draw", "area",
-                            "nearest", "farthest", history.has_samples ? "samples" : "covers", "owns", "fate");
+  std::string text = format(
+      "Fragments; triangles have the numbers of export-soup\n  %4s %9s  %-20s %9s %10s %10s %7s %6s  %s\n", "#",
+      "triangle", "draw", "area", "nearest", "farthest", history.has_samples ? "samples" : "covers", "owns", "fate");
   for (std::size_t i = 0; i < history.fragments.size(); ++i) {
     const HistoryFragment& each = history.fragments[i];
     if (others > kMost && !matters[i]) {

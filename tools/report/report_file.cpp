@@ -225,7 +225,9 @@ ReportFile read_report(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "report.json";
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw ReportError(folder.string() + ": no such folder; expected one that `beampipe compare` or `run` has written");
+    throw ReportError(folder.string() +
+                      (std::filesystem::exists(folder, ignored) ? ": not a folder" : ": no such folder") +
+                      "; expected one that `beampipe compare` or `run` has written");
   }
   ReportFile report{.folder = folder};
   report.json = parse_json(file.string());

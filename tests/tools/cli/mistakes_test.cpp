@@ -9,6 +9,7 @@ namespace beampipe::mistakes_test {
 TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   write_text(folder_ / "broken.json", "{\"beampipe_trace\": 1,");
   write_text(folder_ / "model.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n");
+  write_text(folder_ / "picture.png", "\x89PNG\r\n\x1a\n");
   write_text(folder_ / "nested.json", std::string(1 << 20, '['));
   for (const char* report : {"piped", "endless"}) std::filesystem::create_directory(folder_ / report);
   ASSERT_EQ(mkfifo(path("piped/report.json").c_str(), 0666), 0);
@@ -86,6 +87,8 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"compare", trace, "-t", "beam", "-o", out, "--ladder", "1,3"}, 2, "msaa:3"},
       {{"compare", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
       {{"diff", trace, trace}, 1, "trace.json"},
+      {{"diff", path("picture.png"), trace}, 1, "picture.png: not a readable EXR image: it is a PNG; `run` and"},
+      {{"report", trace}, 1, "trace.json: not a folder; expected one that"},
       {{"diff", trace}, 2, "B"},
       {{"info", path("missing.json")}, 1, "missing.json"},
       {{"export-soup", trace, "-o", trace}, 2, "the trace itself"},

@@ -60,9 +60,8 @@ TEST_F(ViewTest, MakeStandsInsideOfARoomAndSaysSo) {
   const Outcome made = run_program({"make", path("room.obj"), "-o", path("room.json")});
   EXPECT_EQ(made.exit_code, 0);
   EXPECT_EQ(made.err, "beampipe: note: " + path("room.obj") +
-                          ": the walls show their backs outside, so the camera stands inside, with --ambient 0.35; "
-                          "move it with --eye and "
-                          "--target, or with --view outside\n");
+                          ": its faces show their backs outside, as the walls of a room do, so the camera stands "
+                          "inside, with --ambient 0.35; move it with --eye and --target, or with --view outside\n");
   const Parsed frame = frame_of("room.json");
   const std::vector<double> eye = frame["camera"]["eye"];
   EXPECT_TRUE(eye[0] > 0 && eye[0] < 4 && eye[1] > 0 && eye[1] < 3 && eye[2] > 0 && eye[2] < 5);
