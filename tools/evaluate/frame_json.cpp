@@ -264,7 +264,7 @@ Form<FrameOf> make_frame_form() {
             "Sum over the stages.");
   return form.written("buffers", buffers_of, form::list(buffer_form()), "Every buffer at its peak.")
       .taken([list = form::list(buffer_form())](const Json& json, FrameOf& of) {
-        take(list, json, of.read_back_to->buffers);
+        list.take(json, of.read_back_to->buffers);
         std::erase_if(of.read_back_to->buffers, [](const Buffer& buffer) { return buffer.name == kABuffer; });
       })
       .written("pixel_counters", filled(&Frame::pixel_counters), form::by_name(statistics_form()),
@@ -351,7 +351,7 @@ FrameReport frame_of(const Json& json) {
   FrameReport frame;
   const TechniqueReport unknown;
   FrameOf of{.frame = frame, .result = unknown, .read_back_to = &frame};
-  take(frame_form(), json, of);
+  frame_form().take(json, of);
   return frame;
 }
 

@@ -31,11 +31,11 @@ struct Form {
 
 // Form::take of any form.
 template <class T>
-void take(const Form<T>& form, const Json& json, T& value) {
+std::function<void(const Json& json, T& value)> taker_of(const Form<T>& form) {
   if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
-    value = json.get<T>();
+    return [](const Json& json, T& value) { value = json.get<T>(); };
   } else {
-    form.take(json, value);
+    return form.take;
   }
 }
 
@@ -68,8 +68,9 @@ class ObjectForm {
   template <class Place, class Value>
   ObjectForm& required(const std::string& key, Place place, const Form<Value>& form, const std::string& meaning) {
     Field<T> field{key, meaning, true, form.schema};
-    field.read = [place, form](const JsonCursor& at, T& object) { form.read(at, std::invoke(place, object)); };
-    if (form.write) field.get = [place, form](const T& object) { return form.write(std::invoke(place, object)); };
+    field.read = [place, read = form.read](const JsonCursor& at, T& object) { read(at, std::invoke(place, object)); };
+    if (form.write)
+      field.get = [place, write = form.write](const T& object) { return write(std::invoke(place, object)); };
     return add(std::move(field));
   }
 
@@ -89,10 +90,11 @@ class ObjectForm {
         field.schema["default"] = value;
     } else {
       Field<T> field{key, meaning, true, form.schema};
-      field.read = [place, form](const JsonCursor& at, T& object) {
-        form.read(at, std::invoke(place, object).emplace());
+      field.read = [place, read = form.read](const JsonCursor& at, T& object) {
+        read(at, std::invoke(place, object).emplace());
       };
-      if (form.write) field.get = [place, form](const T& object) { return form.write(*std::invoke(place, object)); };
+      if (form.write)
+        field.get = [place, write = form.write](const T& object) { return write(*std::invoke(place, object)); };
       field.is_left_out = [place](const T& object) { return !std::invoke(place, object); };
       add(std::move(field));
     }
@@ -108,15 +110,19 @@ class ObjectForm {
     Field<T> field{key, meaning, true, form.schema};
     if constexpr (std::is_same_v<Stored, std::optional<Value>>) {
       field.required = false;
-      field.get = [place, form](const T& object) { return form.write(*std::invoke(place, object)); };
+      field.get = [place, write = form.write](const T& object) { return write(*std::invoke(place, object)); };
       field.is_left_out = [place](const T& object) { return !std::invoke(place, object); };
     } else {
-      field.get = [place, form](const T& object) { return form.write(std::invoke(place, object)); };
+      field.get = [place, write = form.write](const T& object) { return write(std::invoke(place, object)); };
     }
     if constexpr (std::is_member_object_pointer_v<Place>) {
-      field.take = [place, form](const Json& json, T& object) { take_into(form, json, object.*place); };
+      field.take = [place, take = taker_of(form)](const Json& json, T& object) {
+        take_into<Value>(take, json, object.*place);
+      };
     } else if constexpr (requires(T & object) { place.ref(object); }) {
-      field.take = [place, form](const Json& json, T& object) { take_into(form, json, place.ref(object)); };
+      field.take = [place, take = taker_of(form)](const Json& json, T& object) {
+        take_into<Value>(take, json, place.ref(object));
+      };
     }
     return add(std::move(field));
   }
@@ -149,7 +155,11 @@ class ObjectForm {
     return *this;
   }
 
-  operator Form<T>() const { return {schema(), reader(), writer(), taker()}; }
+  // Forms are copied into those of what holds them, so their functions share the fields.
+  operator Form<T>() const {
+    const auto self = std::make_shared<const ObjectForm>(*this);
+    return {schema(), reader(self), writer(self), taker(self)};
+  }
 
  private:
   Json schema() const {
@@ -172,9 +182,9 @@ class ObjectForm {
     return keys;
   }
 
-  // Forms are copied into those of what holds them, so they share their fields.
-  auto reader() const {
-    const auto self = std::make_shared<const ObjectForm>(*this);
+  using Shared = std::shared_ptr<const ObjectForm>;
+
+  static auto reader(const Shared& self) {
     std::vector<std::string_view> known;
     for (const Field<T>& field : self->fields_) known.push_back(field.key);
     return [self, known](const JsonCursor& at, T& object) {
@@ -191,8 +201,8 @@ class ObjectForm {
     };
   }
 
-  auto writer() const {
-    return [self = std::make_shared<const ObjectForm>(*this)](const T& object) {
+  static auto writer(const Shared& self) {
+    return [self](const T& object) {
       Json json = Json::object();
       for (const Field<T>& field : self->fields_)
         if (field.get && !(field.is_left_out && field.is_left_out(object))) json[field.key] = field.get(object);
@@ -200,19 +210,19 @@ class ObjectForm {
     };
   }
 
-  template <class Value, class Stored>
-  static void take_into(const Form<Value>& form, const Json& json, Stored& stored) {
+  template <class Value, class Take, class Stored>
+  static void take_into(const Take& take, const Json& json, Stored& stored) {
     if constexpr (std::is_same_v<Stored, std::optional<Value>>) {
-      beampipe::take(form, json, stored.emplace());
+      take(json, stored.emplace());
     } else if constexpr (std::is_same_v<Stored, Value>) {
-      beampipe::take(form, json, stored);
+      take(json, stored);
     } else {
       stored = json.get<Stored>();  // another type of integer
     }
   }
 
-  auto taker() const {
-    return [self = std::make_shared<const ObjectForm>(*this)](const Json& json, T& object) {
+  static auto taker(const Shared& self) {
+    return [self](const Json& json, T& object) {
       for (const Field<T>& field : self->fields_) {
         if (!field.take) continue;
         const Json* const value = field.required && !field.may_lack ? &json.at(field.key) : json.find(field.key);
@@ -257,17 +267,17 @@ Form<std::vector<Value>> list(const Form<Value>& element, const std::string& one
   Json schema = {{"type", "array"}, {"items", element.schema}};
   if (!one.empty()) schema["minItems"] = 1;
   return {schema,
-          [element, one](const JsonCursor& at, std::vector<Value>& values) {
-            for (const JsonCursor& each : at.elements()) element.read(each, values.emplace_back());
+          [read = element.read, one](const JsonCursor& at, std::vector<Value>& values) {
+            for (const JsonCursor& each : at.elements()) read(each, values.emplace_back());
             if (values.empty() && !one.empty()) at.fail("at least one " + one, "none");
           },
-          [element](const std::vector<Value>& values) {
+          [write = element.write](const std::vector<Value>& values) {
             Json json = Json::array();
-            for (const Value& value : values) json.push_back(element.write(value));
+            for (const Value& value : values) json.push_back(write(value));
             return json;
           },
-          [element](const Json& json, std::vector<Value>& values) {
-            for (const Json& each : json.elements()) take(element, each, values.emplace_back());
+          [take = taker_of(element)](const Json& json, std::vector<Value>& values) {
+            for (const Json& each : json.elements()) take(each, values.emplace_back());
           }};
 }
 
@@ -297,13 +307,13 @@ template <class Value>
 Form<std::map<std::string, Value>> by_name(const Form<Value>& element) {
   return {{{"type", "object"}, {"additionalProperties", element.schema}},
           {},
-          [element](const std::map<std::string, Value>& values) {
+          [write = element.write](const std::map<std::string, Value>& values) {
             Json json = Json::object();
-            for (const auto& [name, value] : values) json[name] = element.write(value);
+            for (const auto& [name, value] : values) json[name] = write(value);
             return json;
           },
-          [element](const Json& json, std::map<std::string, Value>& values) {
-            for (const auto& [name, value] : json.members()) take(element, value, values[name]);
+          [take = taker_of(element)](const Json& json, std::map<std::string, Value>& values) {
+            for (const auto& [name, value] : json.members()) take(value, values[name]);
           }};
 }
 
@@ -320,10 +330,10 @@ template <class Value>
 Form<std::vector<Value>> named(const Form<Value>& element, std::string Value::*name, const std::string& one = "") {
   Json schema = {{"type", "object"}, {"additionalProperties", element.schema}};
   if (!one.empty()) schema["minProperties"] = 1;
-  return {schema, [element, name, one](const JsonCursor& at, std::vector<Value>& values) {
+  return {schema, [read = element.read, name, one](const JsonCursor& at, std::vector<Value>& values) {
             for (const auto& [key, value] : at.members()) {
               values.emplace_back().*name = key;
-              element.read(value, values.back());
+              read(value, values.back());
             }
             if (values.empty() && !one.empty()) at.fail("at least one " + one, "none");
           }};
@@ -341,14 +351,17 @@ Form<std::map<std::string, Value>> record(const std::vector<Key>& keys, bool req
   ObjectForm<Values> object(called);
   for (const auto& [key, meaning] : keys)
     object.add({key, meaning, required, form.schema,
-                [key = key, form](const JsonCursor& at, Values& values) { form.read(at, values[key]); }});
+                [key = key, read = form.read](const JsonCursor& at, Values& values) { read(at, values[key]); }});
   return object;
 }
 
 // A form of which only the shape is checked.
 template <class T, class Value>
 Field<T> unused(const std::string& key, bool required, const Form<Value>& form, const std::string& meaning) {
-  return {key, meaning, required, form.schema, [form](const JsonCursor& at, T&) { form(at); }};
+  return {key, meaning, required, form.schema, [read = form.read](const JsonCursor& at, T&) {
+            Value value{};
+            read(at, value);
+          }};
 }
 
 }  // namespace form
