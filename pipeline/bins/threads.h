@@ -6,7 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <cstddef>
-#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -14,13 +14,8 @@ namespace beampipe {
 
 inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
 
-// The calling thread's arena for so many threads. It is kept until that thread ends, because oneTBB 2021.8 does not
-// free an arena that is given up right after its last task: each frame would leave 7 KB for two threads, 40 KB for
-// sixteen.
-inline tbb::task_arena& arena_for(int threads) {
-  thread_local std::map<int, tbb::task_arena> arenas;
-  return arenas.try_emplace(threads, threads).first->second;
-}
+// An arena for so many threads that nobody else uses, and that goes back when it is let go.
+std::shared_ptr<tbb::task_arena> borrow_arena(int threads);
 
 // Runs `work` with its parallel loops on so many threads, and returns what it returns.
 template <class Work>
@@ -31,7 +26,7 @@ auto on_threads(int threads, Work&& work) {
   std::optional<tbb::global_control> limit;
   if (allowed > tbb::info::default_concurrency())
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(allowed));
-  return arena_for(allowed).execute(std::forward<Work>(work));
+  return borrow_arena(allowed)->execute(std::forward<Work>(work));
 }
 
 }  // namespace beampipe

@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cstddef>
 #include <fstream>
+#include <stdexcept>
+#include <thread>
 
 namespace beampipe {
 namespace {
@@ -19,19 +21,34 @@ std::size_t resident_bytes() {
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// Frames of a few microseconds, so that some end while another thread is still about to leave their work.
-void run_frames(int count) {
+constexpr std::size_t kMostGrowth = std::size_t{4} << 20;
+
+// A few microseconds, so that some frames end while another thread is still about to leave their work.
+void run_frame() {
   std::atomic<int> sum = 0;
-  for (int frame = 0; frame < count; ++frame)
-    on_threads(2, [&] { tbb::parallel_for(0, 24, [&](int i) { sum += i; }); });
-  ASSERT_EQ(sum, 276 * count);
+  on_threads(2, [&] { tbb::parallel_for(0, 24, [&](int i) { sum += i; }); });
+  ASSERT_EQ(sum, 276);
 }
 
 TEST(Threads, KeepNoMemoryFromFrameToFrame) {
-  run_frames(1000);
+  for (int frame = 0; frame < 1000; ++frame) run_frame();
   const std::size_t before = resident_bytes();
-  run_frames(4000);
-  EXPECT_LT(resident_bytes(), before + (std::size_t{4} << 20));
+  for (int frame = 0; frame < 4000; ++frame) run_frame();
+  EXPECT_LT(resident_bytes(), before + kMostGrowth);
+}
+
+// As in Python, where each call has a thread of its own.
+TEST(Threads, KeepNoMemoryOfThreadsThatHaveEnded) {
+  for (int frame = 0; frame < 100; ++frame) std::thread(run_frame).join();
+  const std::size_t before = resident_bytes();
+  for (int frame = 0; frame < 2000; ++frame) std::thread(run_frame).join();
+  EXPECT_LT(resident_bytes(), before + kMostGrowth);
+}
+
+TEST(Threads, AnErrorLeavesThemUsable) {
+  for (int i = 0; i < 100; ++i)
+    EXPECT_THROW(on_threads(2, [] { on_threads(2, [] { throw std::runtime_error("x"); }); }), std::runtime_error);
+  run_frame();
 }
 
 TEST(Threads, WorkSeesTheNumberThatItWasGiven) {

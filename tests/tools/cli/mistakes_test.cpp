@@ -87,7 +87,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"compare", trace, "-t", "beam", "-o", out, "--ladder", "1,3"}, 2, "msaa:3"},
       {{"compare", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
       {{"diff", trace, trace}, 1, "trace.json"},
-      {{"diff", path("picture.png"), trace}, 1, "picture.png: not a readable EXR image: it is a PNG; `run` and"},
+      {{"diff", path("picture.png"), trace}, 1, "picture.png: not a readable EXR image: it is a PNG; expected an EXR"},
       {{"report", trace}, 1, "trace.json: not a folder; expected one that"},
       {{"diff", trace}, 2, "B"},
       {{"info", path("missing.json")}, 1, "missing.json"},
