@@ -48,7 +48,7 @@ LOSSES = {"as published, best reading": "casav", "masks by edge tests": "casav:m
           "ours, 32 positions, 14 bytes": "beam:order=sorted,bits=32",
           "ours, 256 positions, one triangle at a time": "beam:order=sorted,window=one",
           "ours, 256 positions": "beam:order=sorted"}
-STEPS = {"1. published pipeline": "casav", "2. exact masks, both ways within the slab": EXACT_MASKS,
+STEPS = {"1. published pipeline": "casav", "2. exact masks, and between over and under within the slab": EXACT_MASKS,
          "3. without an A-buffer": "casav:order=near-first,layers=8",
          "4a. areas conserved, 32 positions": "beam:order=sorted,bits=32",
          "4b. areas conserved, 256 positions": "beam:order=sorted",
