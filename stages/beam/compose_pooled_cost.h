@@ -64,7 +64,6 @@ OperationCounts of(Rule&& rule) {
   return count_operations([&](OperationCounts& counts) { rule(Number(1.0f, counts), counts); });
 }
 
-inline DepthPlane<Number> plane_of(const Number& one) { return {one, one, one}; }
 inline SurfaceArea<Number> area_of(const Number& one) { return {one, one, one}; }
 
 // The cost for each of `count` sizes.

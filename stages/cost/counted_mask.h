@@ -23,7 +23,6 @@ struct CountedMask {
 };
 inline CountedMask operator&(const CountedMask& a, const CountedMask&) { return a.counted(); }
 inline CountedMask operator|(const CountedMask& a, const CountedMask&) { return a.counted(); }
-inline CountedMask operator^(const CountedMask& a, const CountedMask&) { return a.counted(); }
 inline CountedMask without(const CountedMask& a, const CountedMask&) { return a.counted(); }
 
 }  // namespace beampipe

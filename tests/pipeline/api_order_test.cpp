@@ -414,6 +414,22 @@ TEST(ApiOrder, MultisamplingConvergesToTheReference) {
   }
 }
 
+// Half of a pixel shows a lamp of luminance 9, the other half white: 9/10 and 1/2, whose mean of 0.7 stands for 7/3.
+TEST(ApiOrder, MultisamplingResolvesInReinhardsSpace) {
+  std::vector<PixelSpaceTriangle> triangles = quad(-1, -1, 4.5, 9, 0.5, glm::vec3(9));
+  append(triangles, quad(4.5, -1, 9, 9, 0.5, glm::vec3(1)));
+  Trace trace = pixel_trace(8, 8, triangles);
+  trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::always};
+  trace.frames[0].draws[0].state.depth.function = Compare::always;
+  ASSERT_TRUE(needs_api_order(trace, trace.frames[0]));
+  const auto red = [&](const char* spec, std::uint32_t x) {
+    return pixel(render_unmodelled(spec, trace).image, x, 4)[0];
+  };
+  EXPECT_NEAR(red("msaa:4,color=rgba32f,resolve=reinhard", 4), 7.0 / 3, 1e-5);
+  EXPECT_NEAR(red("msaa:4,color=rgba32f", 4), 5, 1e-5);
+  EXPECT_NEAR(red("msaa:4,color=rgba32f,resolve=reinhard", 2), 9, 1e-4);
+}
+
 // A triangle over the whole picture, whose window depth is `left` at the left edge and changes by `step` in each pixel.
 Mesh slope(double left, double step, const glm::vec3& color) {
   const auto at = [&](double x, double y) { return glm::dvec3(x, y, left + step * x); };
