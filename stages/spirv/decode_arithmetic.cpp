@@ -208,17 +208,6 @@ bool Decoder::decode_arithmetic(const Instruction& instruction) {
       define(instruction, {result});
       return true;
     }
-    case spv::OpOrdered:
-    case spv::OpUnordered: {
-      const Parts a = parts(operands[0]), b = parts(operands[1]);
-      Parts results;
-      for (std::size_t i = 0; i < a.size(); ++i) {
-        const Row either = emit(Code::bit_or, emit(Code::is_nan, a[i]), emit(Code::is_nan, b[i]));
-        results.push_back(instruction.op == spv::OpUnordered ? either : emit_free(Code::bit_not, either));
-      }
-      define(instruction, std::move(results));
-      return true;
-    }
     case spv::OpIAddCarry:
     case spv::OpISubBorrow: {
       const Parts a = parts(operands[0]), b = parts(operands[1]);

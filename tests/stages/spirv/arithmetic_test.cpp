@@ -257,6 +257,26 @@ TEST(SpirvArithmetic, HalfFloats) {
          [](const Inputs& in) { return half_value(static_cast<std::uint16_t>(in.i)); });
 }
 
+// The first of several narrow numbers is the lowest part of a wide one.
+TEST(SpirvArithmetic, BitsOfSeveralNumbersAreThoseOfOne) {
+  const std::string wide = "%x = OpUConvert %us4 %vi\n%y = OpBitcast %u2 %x\n";
+  integers(
+      wide +
+          "%w = OpVectorShuffle %u4 %y %y 0 0 1 1\n%h = OpShiftRightLogical %u4 %w %shifts\n"
+          "%r = OpBitwiseAnd %u4 %h %low",
+      [](const Inputs& in) { return in.i & 0xffffu; },
+      "%u16 = OpConstant %uint 16\n%umask = OpConstant %uint 65535\n"
+      "%shifts = OpConstantComposite %u4 %u0 %u16 %u0 %u16\n"
+      "%low = OpConstantComposite %u4 %umask %umask %umask %umask");
+  integers(wide + "%z = OpBitcast %us4 %y\n%r = OpUConvert %u4 %z", [](const Inputs& in) { return in.i & 0xffffu; });
+  floats("%x = OpFConvert %h4 %va\n%y = OpBitcast %u2 %x\n%z = OpBitcast %h4 %y\n%r = OpFConvert %v4 %z",
+         [](const Inputs& in) { return nearest_half(in.a); });
+}
+
+TEST(SpirvArithmetic, CopiesAreTheSame) {
+  floats("%q = OpCopyObject %v4 %va\n%r = OpFAdd %v4 %q %vb", [](const Inputs& in) { return in.a + in.b; });
+}
+
 TEST(SpirvArithmetic, SelectsPartByPart) {
   floats("%t = OpULessThan %b4 %vi %vj\n%r = OpSelect %v4 %t %va %vb",
          [](const Inputs& in) { return in.i < in.j ? in.a : in.b; });

@@ -210,6 +210,27 @@ TEST(SpirvImages, ComparisonsWithASamplerOfTheirOwn) {
   EXPECT_EQ(shader.number(0, 9), shader.echo.asked[0].rows[0][0].number(9));
 }
 
+TEST(SpirvImages, ComparisonsThatProject) {
+  ImageShader shader(R"(
+%uvq = OpVectorShuffle %v3 %va %va 0 1 2
+%x = OpImageSampleDrefImplicitLod %float %i_ %uv %f1
+%y = OpImageSampleProjDrefImplicitLod %float %i_ %uvq %f1
+%z = OpImageSampleProjDrefExplicitLod %float %i_ %uvq %f1 Lod %f2
+%r = OpCompositeConstruct %v4 %x %y %z %f0
+)");
+  set_quads(shader);
+  shader.run();
+  EXPECT_TRUE(shader.program.takes_differences);
+  ASSERT_EQ(shader.echo.asked.size(), 3u);
+  for (const Asked& asked : shader.echo.asked) {
+    EXPECT_EQ(asked.request.action, ImageAction::sample);
+    EXPECT_EQ(asked.reference.number(3), &asked == &shader.echo.asked[0] ? 1 : 0.5f);  // divided by what va has there
+  }
+  const Asked &plain = shader.echo.asked[0], &projected = shader.echo.asked[1];
+  EXPECT_EQ(projected.rows[0][0].number(3), plain.rows[0][0].number(3) / 2);
+  EXPECT_EQ(shader.echo.asked[2].lod.number(3), 2);
+}
+
 TEST(SpirvImages, FetchesAndQueriesOfAnElement) {
   ImageShader shader(R"(
 %n = OpCompositeExtract %uint %vi 3
