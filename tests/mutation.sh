@@ -215,6 +215,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_pooled_pixel-inl.h|(count - before.count) * pixels_.pool.link_bytes()|0'
   'stages/data/pooled_pixels.h|beyond_guaranteed_ + beyond(count)|beyond_guaranteed_ + count'
   'pipeline/units/frame_pool.h|a.chunks > b.chunks|a.chunks < b.chunks'
+  'pipeline/bins/threads.cpp|idle.arenas[threads].emplace_back(returned);|delete returned;'
   'pipeline/memory/record_memory.cpp|record.push_back(free_.back());|record.push_back(never_taken_++);'
   'stages/samples/blend_cost.h|samples.tested * kSampleDepthBytes|samples.passed * kSampleDepthBytes'
   'stages/beam/alpha_mask_cost.h|rank_cost() * work.ranked|rank_cost() * work.tests'
