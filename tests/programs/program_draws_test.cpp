@@ -237,6 +237,49 @@ OpStore %out %color
     expect_picture(scene.trace, spec, expected, std::string(spec) == "msaa:1" ? kRounding : 0.02f);
 }
 
+// The vertices of both triangles turn clockwise on screen. No fragment that is drawn helps others.
+TEST(ProgramDraws, BuiltInsSayWhichTriangleItIs) {
+  ProgramTrace scene(8, 8,
+                     ShaderParts{.body = R"(
+%is_front = OpLoad %bool %facing
+%red = OpSelect %float %is_front %f1 %f0
+%number = OpLoad %int %primitive
+%green = OpConvertSToF %float %number
+%place = OpLoad %v2 %point
+%x = OpCompositeExtract %float %place 0
+%helps = OpLoad %bool %helper
+%blue = OpSelect %float %helps %f1 %x
+%color = OpCompositeConstruct %v4 %red %green %blue %f1
+OpStore %out %color
+)",
+                                 .globals = R"(
+%in_bool = OpTypePointer Input %bool
+%in_int = OpTypePointer Input %int
+%in_v2 = OpTypePointer Input %v2
+%facing = OpVariable %in_bool Input
+%helper = OpVariable %in_bool Input
+%primitive = OpVariable %in_int Input
+%point = OpVariable %in_v2 Input
+)",
+                                 .decorations = "OpDecorate %facing BuiltIn FrontFacing\n"
+                                                "OpDecorate %helper BuiltIn HelperInvocation\n"
+                                                "OpDecorate %primitive BuiltIn PrimitiveId\n"
+                                                "OpDecorate %primitive Flat\n"
+                                                "OpDecorate %point BuiltIn PointCoord\n",
+                                 .capabilities = "OpCapability Geometry\n",
+                                 .interface = "%facing %helper %primitive %point"});
+  Draw& draw = scene.fill();
+  for (const bool is_front : {false, true}) {
+    draw.state.front_is_clockwise = is_front;
+    for (const char* spec : kSpecs)
+      expect_picture(scene.trace, spec, [&](auto x, auto y) {
+        const auto along = static_cast<int>(x + y);
+        if (along == 7) return glm::vec3(std::numeric_limits<float>::quiet_NaN());  // both triangles
+        return glm::vec3(is_front ? 1 : 0, along > 7 ? 1 : 0, 0.5f);
+      });
+  }
+}
+
 TEST(ProgramDraws, DiscardedFragmentsAreNotThere) {
   ProgramTrace scene(8, 8, discarding_left_of("5", "OpStore %out %f1111\n"));
   scene.fill();
