@@ -145,6 +145,29 @@ TEST(ProgramImages, WrapsAtEdges) {
   }
 }
 
+TEST(ProgramImages, BordersHaveTheChannelsOfTheFormat) {
+  using enum TexelFormat;
+  const auto at_border = [](TexelFormat format, const glm::vec4& border) {
+    ProgramImage image{.name = "zero", .shape = ImageShape::d1, .format = format, .width = 4, .texels = {}};
+    image.texels.resize(level_start(image, 1));
+    Reader reader(std::move(image), nearest(SamplerWrap::clamp_to_border));
+    reader.sampler().border = border;
+    return reader.bits({.at = {-1.0f}});
+  };
+  const auto numbers = [&](TexelFormat format) {
+    return std::bit_cast<std::array<float, 4>>(at_border(format, {0.25f, 0.5f, 0.75f, 0.125f}));
+  };
+  using Numbers = std::array<float, 4>;
+  for (const TexelFormat format : {R8_UNORM, R16_SFLOAT, R32_SFLOAT, D32_SFLOAT})
+    EXPECT_EQ(numbers(format), (Numbers{0.25f, 0, 0, 1}));
+  for (const TexelFormat format : {R8G8_UNORM, R16G16_SFLOAT}) EXPECT_EQ(numbers(format), (Numbers{0.25f, 0.5f, 0, 1}));
+  for (const TexelFormat format : {R8G8B8A8_UNORM, R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT})
+    EXPECT_EQ(numbers(format), (Numbers{0.25f, 0.5f, 0.75f, 0.125f}));
+  using Bits = std::array<std::uint32_t, 4>;
+  EXPECT_EQ(at_border(R32G32B32A32_UINT, {7, 3e9f, 0, 1}), (Bits{7, 3'000'000'000, 0, 1}));
+  EXPECT_EQ(at_border(R32G32B32A32_SINT, {-2, 7, 0, 1}), (Bits{0xfffffffe, 7, 0, 1}));
+}
+
 TEST(ProgramImages, LinearFiltersMixNeighbours) {
   Reader line(numbered(ImageShape::d1, 4), linear());
   EXPECT_EQ(line({.at = {0.5f}}), 1.5f);
