@@ -168,6 +168,34 @@ TEST(ProgramImages, BordersHaveTheChannelsOfTheFormat) {
   EXPECT_EQ(at_border(R32G32B32A32_SINT, {-2, 7, 0, 1}), (Bits{0xfffffffe, 7, 0, 1}));
 }
 
+// Each lane reads texel 5 of a row of 4 with another sampler of an array: one of its edge, one of its border, and one
+// that nobody has bound.
+TEST(ProgramImages, SamplersOfAnArray) {
+  const std::vector<ProgramImage> images{numbered(ImageShape::d1, 4)};
+  std::vector<ProgramSampler> samplers{nearest(SamplerWrap::clamp_to_edge), nearest(SamplerWrap::clamp_to_border)};
+  samplers[1].border.r = 9;
+  LaneProgram program;
+  program.images.push_back({.set = 0, .binding = 0, .dim = spv::Dim1D});
+  program.samplers.push_back({.set = 1, .binding = 2, .count = 4});
+  const BoundImages bound = bound_images(program,
+                                         {{.set = 0, .binding = 0, .image = 0},
+                                          {.set = 1, .binding = 2, .element = 3, .sampler = 1},
+                                          {.set = 1, .binding = 2, .element = 0, .sampler = 0}},
+                                         images, samplers);
+  ProgramImages reader(program, bound);
+  LaneRow u{}, element{}, active{};
+  u.bits.fill(std::bit_cast<std::uint32_t>(5.5f / 4)), active.bits.fill(~0u);
+  element.bits[1] = 3, element.bits[2] = 1, element.bits[3] = 70'000;
+  ImageRequest request{.action = ImageAction::sample, .lanes = 4, .active = &active};
+  request.coordinates = {&u}, request.sampler = 0, request.sampler_element = &element;
+  std::array<LaneRow, 4> texel;
+  reader.read(request, {&texel[0], &texel[1], &texel[2], &texel[3]});
+  EXPECT_EQ(texel[0].number(0), 3);
+  EXPECT_EQ(texel[0].number(1), 9);
+  EXPECT_EQ(texel[0].number(2), 1) << "without a sampler it repeats";
+  EXPECT_EQ(texel[0].number(3), 1);
+}
+
 TEST(ProgramImages, LinearFiltersMixNeighbours) {
   Reader line(numbered(ImageShape::d1, 4), linear());
   EXPECT_EQ(line({.at = {0.5f}}), 1.5f);
