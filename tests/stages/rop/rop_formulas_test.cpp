@@ -119,6 +119,9 @@ TEST(RopFormulas, PartsOfBlending) {
   const BlendParts less = parts({BlendFactor::one, BlendFactor::destination_color, BlendOperation::subtract});
   EXPECT_FLOAT_EQ(less.added, 1);
   EXPECT_FLOAT_EQ(less.kept, -(0.125f + 0.5f + 0.75f) / 3);
+  const BlendParts rest = parts({BlendFactor::destination_color, BlendFactor::one, BlendOperation::reverse_subtract});
+  EXPECT_FLOAT_EQ(rest.added, -(0.125f + 0.5f + 0.75f) / 3);
+  EXPECT_FLOAT_EQ(rest.kept, 1);
   EXPECT_EQ(parts({BlendFactor::one, BlendFactor::one, BlendOperation::max}).added, 1) << "the source is brighter";
   EXPECT_EQ(parts({BlendFactor::one, BlendFactor::one, BlendOperation::min}).added, 0);
 }

@@ -288,5 +288,58 @@ OpDecorate %second Index 1
   EXPECT_EQ(seconds, 4u);
 }
 
+// Members of a block follow each other, from its location or their own on.
+TEST(SpirvMemory, LocationsOfBlocks) {
+  TestShader shader({.body = R"(
+%from = OpAccessChain %in_v4 %together %i3_
+%first = OpLoad %v4 %from
+%in_float = OpAccessChain %to_float %apart %i1
+%last = OpLoad %float %in_float
+%r = OpVectorTimesScalar %v4 %first %last
+OpStore %out %r
+)",
+                     .globals = R"(
+%pairs = OpTypeArray %v2 %u2_
+%block = OpTypeStruct %v3 %float %pairs %v4
+%to_block = OpTypePointer Input %block
+%other_block = OpTypeStruct %v2 %float
+%to_other = OpTypePointer Input %other_block
+%to_float = OpTypePointer Input %float
+%together = OpVariable %to_block Input
+%apart = OpVariable %to_other Input
+)",
+                     .decorations = R"(
+OpDecorate %block Block
+OpDecorate %together Location 8
+OpMemberDecorate %block 1 NoPerspective
+OpDecorate %other_block Block
+OpMemberDecorate %other_block 0 Location 21
+OpMemberDecorate %other_block 1 Location 20
+OpMemberDecorate %other_block 1 Component 3
+)",
+                     .interface = "%together %apart"});
+  std::set<std::pair<std::uint32_t, std::uint32_t>> found;
+  for (const InterfaceRow& row : shader.program.inputs) {
+    if (row.location < 8) continue;
+    EXPECT_TRUE(found.insert({row.location, row.component}).second);
+    EXPECT_EQ(row.interpolation, row.location == 9 ? Interpolation::linear : Interpolation::perspective);
+  }
+  EXPECT_EQ(found, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{8, 0},
+                                                                      {8, 1},
+                                                                      {8, 2},
+                                                                      {9, 0},
+                                                                      {10, 0},
+                                                                      {10, 1},
+                                                                      {11, 0},
+                                                                      {11, 1},
+                                                                      {12, 0},
+                                                                      {12, 1},
+                                                                      {12, 2},
+                                                                      {12, 3},
+                                                                      {20, 3},
+                                                                      {21, 0},
+                                                                      {21, 1}}));
+}
+
 }  // namespace
 }  // namespace beampipe
