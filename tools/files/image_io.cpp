@@ -116,9 +116,9 @@ void require_ended_channels(const std::filesystem::path& file) {
 }
 
 void require_no_png(const std::filesystem::path& file) {
-  std::string start(4, '\0');
-  std::ifstream(file, std::ios::binary).read(start.data(), 4);
-  if (start == "\x89PNG") throw std::runtime_error("it is a PNG; expected an EXR, such as `run` and `compare` write");
+  std::string start(kPngStart.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start == kPngStart) throw std::runtime_error("it is a PNG; expected an EXR, such as `run` and `compare` write");
 }
 
 // How many uncompressed bytes one byte of a file can stand for: up to 1032 in deflate (RFC 1951: a match of 258 bytes

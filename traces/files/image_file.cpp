@@ -20,7 +20,6 @@
 namespace beampipe {
 namespace {
 
-constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
 constexpr std::string_view kJpegStart = "\xff\xd8\xff";
 
 // At most 1032 bytes come out of one of deflate (zlib.net/zlib_tech.html); the rest is for rounding.

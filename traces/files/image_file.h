@@ -19,6 +19,8 @@ struct BadImage {
   std::string expected, found;
 };
 
+inline constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";  // the first bytes of a PNG file
+
 // The texels of a PNG or JPEG file, whose first bytes tell which it is. Grey is expanded to RGB, alpha is 255 where the
 // file has none, and channels of 16 bits are rounded to 8. The numbers are taken as stored, as glTF asks: gamma, colour
 // profiles and orientation are ignored. The image has no name.
