@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Prints which lines and branches of stages/ and simd/ the tests reach.
 
-    cmake --preset coverage && cmake --build --preset coverage --target {simd,stages,spirv,programs,pipeline,lavapipe}_tests
+    cmake --preset coverage
+    cmake --build --preset coverage --target {simd,stages,spirv,programs,pipeline,lavapipe}_tests
     tests/coverage.py build/coverage [simd stages spirv programs pipeline lavapipe]
 
 runs those tests (all, or the named ones) and prints a table. Clang counts how often each condition of the source

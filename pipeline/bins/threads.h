@@ -14,7 +14,7 @@ namespace beampipe {
 
 inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
 
-// An arena for so many threads that nobody else uses, and that goes back when it is let go.
+// An arena for so many threads. It is the caller's alone, and becomes free for others when the pointer is gone.
 std::shared_ptr<tbb::task_arena> borrow_arena(int threads);
 
 // Runs `work` with its parallel loops on so many threads, and returns what it returns.

@@ -222,13 +222,16 @@ TEST(SpirvImages, ComparisonsThatProject) {
   shader.run();
   EXPECT_TRUE(shader.program.takes_differences);
   ASSERT_EQ(shader.echo.asked.size(), 3u);
-  for (const Asked& asked : shader.echo.asked) {
-    EXPECT_EQ(asked.request.action, ImageAction::sample);
-    EXPECT_EQ(asked.reference.number(3), &asked == &shader.echo.asked[0] ? 1 : 0.5f);  // divided by what va has there
+  const Asked &plain = shader.echo.asked[0], &projected = shader.echo.asked[1], &explicit_lod = shader.echo.asked[2];
+  for (const Asked* const asked : {&plain, &projected, &explicit_lod})
+    EXPECT_EQ(asked->request.action, ImageAction::sample);
+  EXPECT_EQ(plain.reference.number(3), 1);
+  // The place and the reference are divided by the third part of %uvq, which is 2.
+  for (const Asked* const asked : {&projected, &explicit_lod}) {
+    EXPECT_EQ(asked->reference.number(3), 0.5f);
+    EXPECT_EQ(asked->rows[0][0].number(3), plain.rows[0][0].number(3) / 2);
   }
-  const Asked &plain = shader.echo.asked[0], &projected = shader.echo.asked[1];
-  EXPECT_EQ(projected.rows[0][0].number(3), plain.rows[0][0].number(3) / 2);
-  EXPECT_EQ(shader.echo.asked[2].lod.number(3), 2);
+  EXPECT_EQ(explicit_lod.lod.number(3), 2);
 }
 
 TEST(SpirvImages, FetchesAndQueriesOfAnElement) {
