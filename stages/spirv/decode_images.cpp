@@ -55,6 +55,7 @@ ImageHandle Decoder::load_handle(const ShaderPointer& from) {
   type = &module_.type(found.type);
   if (type->kind != Kind::image) throw ShaderError("expected an image or a sampler, found another type");
   if (type->storage_image) throw ShaderError("storage images are not supported");
+  if (type->multisampled) throw ShaderError("images with several samples are not supported");
   const ShaderType& texel = module_.type(type->element);
   const auto [slot, is_new] =
       slots_.try_emplace(from.variable, static_cast<std::uint32_t>(draft_.program.images.size()));
@@ -67,7 +68,6 @@ ImageHandle Decoder::load_handle(const ShaderPointer& from) {
                                      .dim = type->dim,
                                      .arrayed = type->arrayed,
                                      .depth = type->depth,
-                                     .multisampled = type->multisampled,
                                      .has_sampler = has_sampler,
                                      .texels = texel.kind == Kind::number ? TexelKind::floats
                                                : is_signed                ? TexelKind::signed_integers
@@ -98,7 +98,6 @@ void Decoder::read_image_operands(std::span<const std::uint32_t> operands, Image
   if (mask & spv::ImageOperandsConstOffsetMask) take_all(op.offset);
   if (mask & spv::ImageOperandsOffsetMask) take_all(op.offset);
   if (mask & spv::ImageOperandsConstOffsetsMask) throw ShaderError("OpImageGather with ConstOffsets is not supported");
-  if (mask & spv::ImageOperandsSampleMask) op.sample = take()[0];
   if (mask & spv::ImageOperandsMinLodMask) op.least_lod = take()[0];
 }
 
@@ -232,9 +231,6 @@ bool Decoder::decode_image(const Instruction& instruction) {
       return true;
     case spv::OpImageQueryLevels:
       query(instruction, Action::query_levels);
-      return true;
-    case spv::OpImageQuerySamples:
-      query(instruction, Action::query_samples);
       return true;
     default:
       return false;

@@ -8,9 +8,9 @@
 //   - inputs, outputs, built-in variables; uniform and storage buffers and push constants, to read; local arrays;
 //   - images that are sampled, gathered, fetched and asked for their sizes, arrays of them included;
 //   - all structured control flow; OpKill, OpTerminateInvocation and OpDemoteToHelperInvocation.
-// Not supported, and named in the error: writes to buffers and images, atomics, storage images, subpass inputs,
-// pointers that are chosen while the shader runs, arrays of buffers with an index that is not constant, subgroups, ray
-// queries, 64 bits.
+// Not supported, and named in the error: writes to buffers and images, atomics, storage images, images with several
+// samples, subpass inputs, pointers that are chosen while the shader runs, arrays of buffers with an index that is not
+// constant, subgroups, ray queries, 64 bits.
 //
 // How counts are made: ops of one invocation are those of the blocks that it runs, each lane operation as lane_code.cpp
 // has it, of the simplified module with its common parts within a block made once.

@@ -33,7 +33,6 @@ struct ImageRequest {
   std::array<const LaneRow*, 3> offset{};  // integers, in texels
   const LaneRow *lod = nullptr, *bias = nullptr, *least_lod = nullptr;  // numbers; lod of fetch, query_size: integers
   const LaneRow* reference = nullptr;                                   // of a comparison of depths
-  const LaneRow* sample = nullptr;                                      // integers
   std::uint32_t component = 0;                                          // gather: which one
   std::size_t lanes = 0;                                                // so many at most
   const LaneRow* active = nullptr;                                      // lanes that ask: not 0
@@ -46,7 +45,7 @@ class ImageReader {
   virtual ~ImageReader() = default;
 
   // Sets up to four components of each lane that asks: numbers or integers, as the image has them, and integers for
-  // queries of sizes, levels and samples. Of query_lod: the level that is read, and that before it is clamped.
+  // queries of sizes and levels. Of query_lod: the level that is read, and that before it is clamped.
   virtual void read(const ImageRequest& request, const std::array<LaneRow*, 4>& texel) = 0;
 };
 

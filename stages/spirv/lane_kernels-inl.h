@@ -312,7 +312,6 @@ inline void image(const LaneOp& op, const LaneState& state) {
                        .bias = row(image_op.bias),
                        .least_lod = row(image_op.least_lod),
                        .reference = row(image_op.reference),
-                       .sample = row(image_op.sample),
                        .component = image_op.component,
                        .lanes = state.lanes,
                        .active = row(kActiveRow)};

@@ -26,7 +26,7 @@ struct LaneOp {
   std::uint32_t a = kNoRow, b = kNoRow, c = kNoRow, d = 0;
 };
 
-enum class ImageAction : std::uint8_t { sample, gather, fetch, query_size, query_levels, query_samples, query_lod };
+enum class ImageAction : std::uint8_t { sample, gather, fetch, query_size, query_levels, query_lod };
 
 // An operation on an image. Rows that it does not have are kNoRow.
 struct ImageOp {
@@ -37,14 +37,14 @@ struct ImageOp {
   std::array<std::uint32_t, 4> coordinates{kNoRow, kNoRow, kNoRow, kNoRow};
   std::array<std::uint32_t, 3> dx{kNoRow, kNoRow, kNoRow}, dy = dx;  // of the coordinates; with the layer left out
   std::array<std::uint32_t, 3> offset = dx;
-  std::uint32_t lod = kNoRow, bias = kNoRow, least_lod = kNoRow, reference = kNoRow, sample = kNoRow;
+  std::uint32_t lod = kNoRow, bias = kNoRow, least_lod = kNoRow, reference = kNoRow;
   std::uint32_t component = 0;  // gather: which one
   bool is_for_helpers = true;   // else lanes whose results nobody keeps need not read
   std::array<std::uint32_t, 4> results{kNoRow, kNoRow, kNoRow, kNoRow};
 
   template <class Visit>
   void for_each_operand(Visit&& visit) {
-    for (std::uint32_t* row : {&image_element, &sampler_element, &lod, &bias, &least_lod, &reference, &sample})
+    for (std::uint32_t* row : {&image_element, &sampler_element, &lod, &bias, &least_lod, &reference})
       if (*row != kNoRow) visit(*row);
     for (std::uint32_t& row : coordinates)
       if (row != kNoRow) visit(row);
@@ -101,7 +101,7 @@ enum class TexelKind : std::uint8_t { floats, signed_integers, unsigned_integers
 struct ImageSlot {
   std::uint32_t set = kNoRow, binding = kNoRow, count = 1;
   spv::Dim dim = spv::Dim2D;
-  bool arrayed = false, depth = false, multisampled = false, has_sampler = false;
+  bool arrayed = false, depth = false, has_sampler = false;
   TexelKind texels = TexelKind::floats;
 };
 struct SamplerSlot {

@@ -536,8 +536,6 @@ std::array<std::uint32_t, 4> answer(const LaneRequest& lane, const ImageRequest&
       return size_of(lane, request, slot, reader);
     case ImageAction::query_levels:
       return {reader.most_level() + 1};
-    case ImageAction::query_samples:
-      return {1};
     default:
       break;
   }

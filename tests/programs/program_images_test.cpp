@@ -389,7 +389,6 @@ TEST(ProgramImages, SizesAreTold) {
   EXPECT_EQ(cube.bits({.action = ImageAction::query_levels})[0], 3u);
   Reader volume(numbered(ImageShape::d3, 8, 4, 2, 1, 4));
   EXPECT_EQ(volume.bits({.action = ImageAction::query_size, .level = 2}), (std::array<std::uint32_t, 4>{2, 1, 1, 0}));
-  EXPECT_EQ(volume.bits({.action = ImageAction::query_samples})[0], 1u);
 }
 
 TEST(ProgramImages, DepthsAreComparedBeforeTheyAreFiltered) {

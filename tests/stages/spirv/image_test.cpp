@@ -1,4 +1,5 @@
 // Images through a reader that says what it was asked, and differences in groups of four lanes.
+#include "tests/message_of.h"
 #include "tests/stages/spirv/shader_text.h"
 
 namespace beampipe {
@@ -263,6 +264,22 @@ TEST(SpirvImages, FetchesAndQueriesOfAnElement) {
   EXPECT_EQ(shader.integer(3, 5), 7u);
   EXPECT_EQ(shader.echo.asked[1].lod.bits[0], 2u);
   EXPECT_EQ(shader.counts.texture_requests, kShaderLanes);  // queries read no texels
+}
+
+TEST(SpirvImages, NoTraceHasImagesWithSeveralSamplesOrThatShadersWriteTo) {
+  // `type`: of the image, after what a texel is of. `read`: a texel of %image_ at %place.
+  const auto error_of = [](const std::string& type, const std::string& read) {
+    const ShaderParts parts{.body = "%image_ = OpLoad %image %kept\n%place = OpVectorShuffle %u2 %vi %vi 0 1\n" +
+                                    ("%texel = " + read) + "\nOpStore %out %texel\n",
+                            .globals = "%image = OpTypeImage %float " + type + R"(
+%to_image = OpTypePointer UniformConstant %image
+%kept = OpVariable %to_image UniformConstant
+)"};
+    return message_of<ShaderError>([&] { load_fragment_shader(assembled(shader_text(parts))); });
+  };
+  EXPECT_EQ(error_of("2D 0 0 1 1 Unknown", "OpImageFetch %v4 %image_ %place Sample %u1"),
+            "images with several samples are not supported");
+  EXPECT_EQ(error_of("2D 0 0 0 2 Rgba8", "OpImageRead %v4 %image_ %place"), "storage images are not supported");
 }
 
 // Only lanes that run the instruction ask, and only they get an answer.
