@@ -147,7 +147,7 @@ def ways(program, folders):
         cells = []
         for way in ("in_turn", "on_cores", "at_once"):
             ratios = [times[BEAM][name][way] / times[MSAA[0]][name][way] for times in found.values()]
-            cells.append(f"{min(ratios):.2f}–{max(ratios):.2f}")
+            cells.append("–".join(f"{ratio:.2f}" for ratio in sorted({min(ratios), max(ratios)})))
         print_row(f"`{name}`", *cells)
 
 
