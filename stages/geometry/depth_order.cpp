@@ -260,12 +260,12 @@ bool has_material(const Trace& trace, const Draw& draw, AlphaMode mode) {
 }  // namespace
 
 bool is_translucent(const Trace& trace, const Draw& draw) {
-  if (draw.kd || !draw.program) return has_material(trace, draw, AlphaMode::blend);
+  if (!draw.program) return has_material(trace, draw, AlphaMode::blend);
   return program_alpha_mode(trace, draw, DrawOrder::by_depth) == AlphaMode::blend;
 }
 
 bool may_be_cut_out(const Trace& trace, const Draw& draw) {
-  if (draw.kd || !draw.program) return has_material(trace, draw, AlphaMode::mask);
+  if (!draw.program) return has_material(trace, draw, AlphaMode::mask);
   return program_alpha_mode(trace, draw, DrawOrder::of_api) == AlphaMode::mask;
 }
 

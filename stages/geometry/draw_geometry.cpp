@@ -45,8 +45,7 @@ struct PlaceOrder {
                         viewport.x, viewport.y, viewport.width, viewport.height, has_scissor, scissor.x, scissor.y,
                         scissor.width, scissor.height, draw.cull, draw.state.front_is_clockwise,
                         // Materials may be single-sided.
-                        draw.kd || draw.program ? kNoMaterial : draw.material.value_or(kNoMaterial),
-                        draw.kd || draw.program);
+                        draw.material.value_or(kNoMaterial), draw.kd || draw.program);
     };
     return rest(one) < rest(other) ? -1 : rest(other) < rest(one) ? 1 : 0;
   }

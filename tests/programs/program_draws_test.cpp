@@ -372,7 +372,9 @@ OpMemberDecorate %push_type 0 Offset 4
     return bytes;
   };
   draw.program->buffers = {{.set = 2, .binding = 3, .bytes = bytes_of({1, 0.5f, 0.25f, 1})},
-                           {.set = 3, .binding = 3, .bytes = bytes_of({0, 0, 0, 0})}};
+                           {.set = 3, .binding = 3, .bytes = bytes_of({0, 0, 0, 0})},
+                           {.set = 2, .binding = 4, .bytes = bytes_of({0, 0, 0, 0})},
+                           {.set = 2, .binding = 3, .element = 1, .bytes = bytes_of({0, 0, 0, 0})}};
   draw.program->push_constants = bytes_of({9, 0.5f});
   ASSERT_EQ(ProgramSet(scene.trace).error(0), "");
   expect_picture(scene.trace, "msaa:1", [](auto, auto) { return glm::vec3(0.5, 0.25, 0.125); });

@@ -170,6 +170,40 @@ TEST(ProgramImages, BordersHaveTheChannelsOfTheFormat) {
 
 // Each lane reads texel 5 of a row of 4 with another sampler of an array: one of its edge, one of its border, and one
 // that nobody has bound.
+TEST(ProgramImages, AreBoundBySetBindingAndElement) {
+  const std::vector<ProgramImage> images{numbered(ImageShape::d1, 4), numbered(ImageShape::d1, 2)};
+  LaneProgram program;
+  program.images.push_back({.set = 1, .binding = 2, .count = 3, .dim = spv::Dim1D});
+  const BoundImages bound = bound_images(program,
+                                         {{.set = 1, .binding = 2, .element = 2, .image = 1},
+                                          {.set = 1, .binding = 2, .element = 0, .image = 0},
+                                          {.set = 0, .binding = 2, .element = 1, .image = 0},
+                                          {.set = 1, .binding = 3, .element = 1, .image = 0},
+                                          {.set = 1, .binding = 2, .element = ~0u, .image = 0}},
+                                         images, {});
+  ASSERT_EQ(bound.images.at(0).size(), 3u);
+  EXPECT_EQ(bound.images[0][0].image, &images[0]);
+  EXPECT_EQ(bound.images[0][1].image, nullptr);
+  EXPECT_EQ(bound.images[0][2].image, &images[1]);
+}
+
+TEST(ProgramImages, AreNotBoundIfTheShaderExpectsOtherDimensions) {
+  using enum ImageShape;
+  const std::vector<ProgramImage> images{numbered(d1, 4),          numbered(d2, 2, 2),    numbered(d2, 2, 2, 1, 6),
+                                         numbered(d2, 2, 1, 1, 6), numbered(d3, 2, 2, 2), numbered(cube, 2, 2, 1, 6)};
+  const std::vector<std::pair<spv::Dim, std::string>> expected{{spv::Dim1D, "1....."}, {spv::DimBuffer, "1....."},
+                                                               {spv::Dim2D, "1111.1"}, {spv::DimRect, "1111.1"},
+                                                               {spv::Dim3D, "....1."}, {spv::DimCube, "..1..1"}};
+  for (const auto& [dim, fitting] : expected) {
+    LaneProgram program;
+    program.images.push_back({.set = 0, .binding = 0, .dim = dim});
+    std::string found;
+    for (std::uint32_t i = 0; i < images.size(); ++i)
+      found += bound_images(program, {{.image = i}}, images, {}).images.at(0).at(0).image ? '1' : '.';
+    EXPECT_EQ(found, fitting) << "dimension " << dim;
+  }
+}
+
 TEST(ProgramImages, SamplersOfAnArray) {
   const std::vector<ProgramImage> images{numbered(ImageShape::d1, 4)};
   std::vector<ProgramSampler> samplers{nearest(SamplerWrap::clamp_to_edge), nearest(SamplerWrap::clamp_to_border)};

@@ -135,6 +135,12 @@ TEST(DrawPlan, NotesWhatIsTranslucentBeforeOpaqueDraws) {
   draws.add(Compare::less);
   ASSERT_EQ(draws.notes().size(), 1u);
   EXPECT_EQ(draws.notes()[0].reason, "translucent, before opaque draws");
+  // The same of the mesh, and then with a colour in its place, which is opaque.
+  draws.trace.meshes[1].materials = {0};
+  draws.frame.draws[1].material.reset();
+  EXPECT_EQ(draws.notes()[0].reason, "translucent, before opaque draws");
+  draws.frame.draws[1].kd = glm::vec3(1);
+  EXPECT_EQ(draws.notes()[0].reason, "depth is tested but not written");
 }
 
 TEST(DrawPlan, EachDepthClearStartsAGroupInFront) {

@@ -61,7 +61,12 @@ TEST(VertexSetup, SnapsToTheNearest256th) {
 
 TEST(VertexSetup, DropsWhatCannotBeSeen) {
   const auto left = [](std::vector<glm::vec3> positions) {
-    return clip_space_scene(positions).setup().triangles.size();
+    Scene scene = clip_space_scene(positions);  // 64 x 32 px
+    const std::size_t found = scene.setup().triangles.size();
+    // The same in a scissor that cuts none of these.
+    scene.frame.draws[0].state.scissor = Scissor{1, 1, 62, 30};
+    EXPECT_EQ(scene.setup().triangles.size(), found);
+    return found;
   };
   EXPECT_EQ(left({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), 1u);
   for (const float bad : {kNaN, kInfinity, -kInfinity}) EXPECT_EQ(left({{0, 0, 0}, {0.5f, bad, 0}, {0, 0.5f, 0}}), 0u);

@@ -72,6 +72,67 @@ TEST(SpirvMemory, OffsetsOfMembersElementsAndColumns) {
   EXPECT_EQ(shader.number(3, 7), (112 + 1 * 16 + 8) / 4);  // column 1, row 2
 }
 
+// struct { vec4 first; struct { float x; vec3 list[4]; layout(row_major) mat2x3 rows; mat2x3 columns } all; }, where
+// `all` is copied as a whole, and lanes choose numbers of the copy.
+TEST(SpirvMemory, StructuresAreReadAsAWhole) {
+  TestShader shader(ShaderParts{.body = R"(
+%copy = OpVariable %to_copy Function
+; begin
+%p = OpAccessChain %to_inner %buffer %i1
+%all = OpLoad %inner %p
+OpStore %copy %all
+%p0 = OpAccessChain %to_number %copy %i0
+%x = OpLoad %float %p0
+%p1 = OpAccessChain %to_number %copy %i1 %vi0 %vi1
+%y = OpLoad %float %p1
+%p2 = OpAccessChain %to_number %copy %i2_ %vi0 %vi1
+%z = OpLoad %float %p2
+%p3 = OpAccessChain %to_number %copy %i3_ %vi0 %vi1
+%w = OpLoad %float %p3
+)",
+                                .floats = "%x %y %z %w",
+                                .globals = R"(
+%n4 = OpConstant %uint 4
+%list = OpTypeArray %v3 %n4
+%m23 = OpTypeMatrix %v3 2
+%inner = OpTypeStruct %float %list %m23 %m23
+%block = OpTypeStruct %v4 %inner
+%to_block = OpTypePointer Uniform %block
+%to_inner = OpTypePointer Uniform %inner
+%to_copy = OpTypePointer Function %inner
+%to_number = OpTypePointer Function %float
+%buffer = OpVariable %to_block Uniform
+)",
+                                .decorations = R"(
+OpDecorate %block Block
+OpDecorate %buffer DescriptorSet 0
+OpDecorate %buffer Binding 0
+OpDecorate %list ArrayStride 16
+OpMemberDecorate %block 0 Offset 0
+OpMemberDecorate %block 1 Offset 16
+OpMemberDecorate %inner 0 Offset 0
+OpMemberDecorate %inner 1 Offset 16
+OpMemberDecorate %inner 2 Offset 80
+OpMemberDecorate %inner 2 MatrixStride 16
+OpMemberDecorate %inner 2 RowMajor
+OpMemberDecorate %inner 3 Offset 128
+OpMemberDecorate %inner 3 MatrixStride 16
+OpMemberDecorate %inner 3 ColMajor
+)"});
+  const std::vector<float> numbers = numbered(44);
+  shader.resources.buffers = {bytes_of(numbers)};
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane)
+    shader.set_integer(3, 0, lane, lane % 2), shader.set_integer(3, 1, lane, lane / 2 % 3);
+  shader.run();
+  for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) {
+    const float column = static_cast<float>(lane % 2), row = static_cast<float>(lane / 2 % 3);
+    EXPECT_EQ(shader.number(0, lane), 4);
+    EXPECT_EQ(shader.number(1, lane), 8 + 4 * column + row);
+    EXPECT_EQ(shader.number(2, lane), 24 + column + 4 * row);
+    EXPECT_EQ(shader.number(3, lane), 36 + 4 * column + row);
+  }
+}
+
 TEST(SpirvMemory, IndicesOfLanesAndBounds) {
   TestShader shader(ShaderParts{.body = R"(
 %p = OpAccessChain %to_v2 %buffer %i4_ %vi0
