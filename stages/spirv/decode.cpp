@@ -29,7 +29,6 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
   };
   std::size_t first = 0, phis = 0;
   bool ends_invocation = false;
-  const auto is_line = [](spv::Op op) { return op == spv::OpLine || op == spv::OpNoLine; };
   for (std::size_t i = 0; i < body.size(); ++i) {
     const Instruction& instruction = body[i];
     const std::span<const std::uint32_t> operands = instruction.operands;
@@ -40,7 +39,7 @@ std::vector<Decoder::Block> Decoder::split_blocks() const {
     }
     if (blocks.empty()) continue;  // OpFunction
     Block& block = blocks.back();
-    if (instruction.op == spv::OpPhi || (is_line(instruction.op) && i == first + phis)) ++phis;
+    phis += instruction.op == spv::OpPhi;
     switch (instruction.op) {
       case spv::OpLoopMerge:
         block.edges.structure = {number_of(operands[0]), number_of(operands[1])};
@@ -83,8 +82,6 @@ void Decoder::decode_instruction(const Instruction& instruction) {
   if (instruction.type != 0) require_room(instruction.type);
   switch (instruction.op) {
     case spv::OpNop:
-    case spv::OpLine:
-    case spv::OpNoLine:
     case spv::OpLoopMerge:
     case spv::OpSelectionMerge:
       return;
@@ -179,7 +176,6 @@ Draft Decoder::decode() {
     if (instruction.op == spv::OpVariable) define_variable(instruction);
   for (const std::uint32_t number : order)
     for (const Instruction& phi : blocks[number].phis) {
-      if (phi.op != spv::OpPhi) continue;
       Parts rows;
       require_room(phi.type);
       const std::uint32_t count = parts_of(phi.type);
@@ -198,7 +194,6 @@ Draft Decoder::decode() {
   for (std::uint32_t i = 0; i < order.size(); ++i) by_label.emplace(blocks[order[i]].label, i);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     for (const Instruction& phi : blocks[order[i]].phis) {
-      if (phi.op != spv::OpPhi) continue;
       const Parts to = parts(phi.result);
       for (std::size_t j = 0; j + 1 < phi.operands.size(); j += 2) {
         const auto from_block = by_label.find(phi.operands[j + 1]);

@@ -302,17 +302,21 @@ TEST(SpirvFlow, LanesDoNotDisturbEachOther) {
   EXPECT_EQ(shader.counts.invocations, all.invocations);
 }
 
-// Two variables change places in each turn of a loop, so that their phis are copied to each other.
+// Two variables change places in each turn of a loop, so that their phis are copied to each other. Lines of a source
+// may stand between them.
 TEST(SpirvFlow, PhisOfALoopAreCopiedAllAtOnce) {
   TestShader shader(ShaderParts{
       .body = "%times = OpCompositeExtract %uint %vi 2\n" + loop_text(R"(
+OpLine %file 1 1
 %x = OpPhi %uint %vi0 %entry %y %again
+OpNoLine
 %y = OpPhi %uint %vi1 %entry %x %again
 %n = OpPhi %uint %u0 %entry %n1 %again
 )",
                                                                       "%goes_on = OpULessThan %bool %n %times\n",
                                                                       "%n1 = OpIAdd %uint %n %u1\n"),
-      .integers = "%x %y %n %u0"});
+      .integers = "%x %y %n %u0",
+      .modes = "%file = OpString \"a file\"\n"});
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) {
     shader.set_integer(3, 0, lane, 100 + lane), shader.set_integer(3, 1, lane, 200 + lane);
     shader.set_integer(3, 2, lane, lane);
