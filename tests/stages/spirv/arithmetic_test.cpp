@@ -257,6 +257,72 @@ TEST(SpirvArithmetic, HalfFloats) {
          [](const Inputs& in) { return half_value(static_cast<std::uint16_t>(in.i)); });
 }
 
+// Halves as codes: the largest, ties below the least one, and what is not finite.
+TEST(SpirvArithmetic, EdgesOfHalfFloats) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<std::pair<float, std::uint32_t>> codes{
+      {kInfinity, 0x7c00}, {-kInfinity, 0xfc00},  {65519.996f, 0x7bff}, {65520, 0x7c00}, {-1e38f, 0xfc00},
+      {-0.0f, 0x8000},     {0x1p-25f, 0},         {0x1.000002p-25f, 1}, {0x1.8p-24f, 2}, {-0x1p-14f, 0x8400},
+      {0x1p-149f, 0},      {0x1.ff8p-15f, 0x3ff}, {0x1.ffcp-15f, 0x400}};
+  TestShader shader(
+      ShaderParts{.body = "%x = OpFConvert %h4 %va\n%y = OpBitcast %us4 %x\n%r = OpUConvert %u4 %y\nOpStore %iout %r"});
+  for (std::uint32_t lane = 0; lane < codes.size(); ++lane) shader.set(0, 0, lane, codes[lane].first);
+  const auto after_all = static_cast<std::uint32_t>(codes.size());
+  shader.set(0, 0, after_all, std::numeric_limits<float>::quiet_NaN());
+  shader.run();
+  for (std::uint32_t lane = 0; lane < codes.size(); ++lane)
+    EXPECT_EQ(shader.integer(0, lane), codes[lane].second) << codes[lane].first;
+  EXPECT_GT(shader.integer(0, after_all) & 0x7fffu, 0x7c00u);
+}
+
+// Of what is not a number SPIR-V leaves the integer open; here it is 0.
+TEST(SpirvArithmetic, IntegersOfWhatIsNotFinite) {
+  TestShader shader(ShaderParts{.body =
+                                    "%x = OpConvertFToS %i4 %va\n%y = OpBitcast %u4 %x\n%z = OpConvertFToU %u4 %va\n"
+                                    "%r = OpVectorShuffle %u4 %y %z 0 4 0 4\nOpStore %iout %r"});
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  shader.set(0, 0, 0, std::numeric_limits<float>::quiet_NaN());
+  shader.set(0, 0, 1, kInfinity), shader.set(0, 0, 2, -kInfinity);
+  shader.run();
+  EXPECT_EQ(shader.integer(0, 0), 0u);
+  EXPECT_EQ(shader.integer(1, 0), 0u);
+  EXPECT_EQ(shader.integer(0, 1), 2147483520u);
+  EXPECT_EQ(shader.integer(1, 1), 4294967040u);
+  EXPECT_EQ(shader.integer(0, 2), 0x80000000u);
+  EXPECT_EQ(shader.integer(1, 2), 0u);
+}
+
+TEST(SpirvArithmetic, BitFieldsMayBeWholeOrEmpty) {
+  TestShader shader(ShaderParts{.body = R"(
+%offset = OpCompositeExtract %uint %vk 0
+%count = OpCompositeExtract %uint %vk 1
+%x = OpBitFieldUExtract %uint %vi0 %offset %count
+%y = OpBitFieldSExtract %uint %vi0 %offset %count
+%z = OpBitFieldInsert %uint %vi0 %vi1 %offset %count
+)",
+                                .integers = "%x %y %z %u0"});
+  constexpr std::uint32_t kBase = 0x89abcdefu, kInserted = 0x13572468u;
+  struct Field {
+    std::uint32_t offset, count, extracted, with_sign, inserted;
+  };
+  const std::vector<Field> fields{{0, 32, kBase, kBase, kInserted},
+                                  {0, 0, 0, 0, kBase},
+                                  {32, 0, 0, 0, kBase},
+                                  {7, 0, 0, 0, kBase},
+                                  {31, 1, 1, ~0u, 0x09abcdefu},
+                                  {16, 16, 0x89abu, 0xffff89abu, 0x2468cdefu}};
+  for (std::uint32_t lane = 0; lane < fields.size(); ++lane) {
+    shader.set_integer(3, 0, lane, kBase), shader.set_integer(3, 1, lane, kInserted);
+    shader.set_integer(5, 0, lane, fields[lane].offset), shader.set_integer(5, 1, lane, fields[lane].count);
+  }
+  shader.run();
+  for (std::uint32_t lane = 0; lane < fields.size(); ++lane) {
+    EXPECT_EQ(shader.integer(0, lane), fields[lane].extracted) << "field " << lane;
+    EXPECT_EQ(shader.integer(1, lane), fields[lane].with_sign) << "field " << lane;
+    EXPECT_EQ(shader.integer(2, lane), fields[lane].inserted) << "field " << lane;
+  }
+}
+
 // The first of several narrow numbers is the lowest part of a wide one.
 TEST(SpirvArithmetic, BitsOfSeveralNumbersAreThoseOfOne) {
   const std::string wide = "%x = OpUConvert %us4 %vi\n%y = OpBitcast %u2 %x\n";

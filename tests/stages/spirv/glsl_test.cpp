@@ -106,6 +106,12 @@ TEST(SpirvGlsl, Limits) {
   expect("Atan", kInfinity, 1.57079637f), expect("Tanh", kInfinity, 1), expect("Tanh", -100, -1);
   expect("Acosh", 1, 0), expect("Atanh", 1, kInfinity), expect("Sinh", kInfinity, kInfinity);
   expect("InverseSqrt", 0, kInfinity), expect("Sqrt", -1, kNan), expect("FSign", -0.0f, 0);
+  expect("Sin", -1e38f, 0), expect("FSign", kInfinity, 1), expect("FSign", -3, -1);
+  for (const std::string round : {"Round", "RoundEven"}) {
+    expect(round, 2.5f, 2), expect(round, -3.5f, -4), expect(round, 8388607.5f, 8388608);
+    expect(round, 8388609, 8388609), expect(round, -1e38f, -1e38f), expect(round, -kInfinity, -kInfinity);
+    expect(round, kNan, kNan);
+  }
 }
 
 // SPIR-V leaves open what FMin and FMax make of what is not a number; graphics processors take the number.
@@ -279,6 +285,69 @@ OpStore %iout %g
     EXPECT_EQ(shader.integer(0, lane), static_cast<std::uint32_t>(exponent));
     EXPECT_EQ(shader.number(3, lane), y[lane]);
   }
+}
+
+TEST(SpirvGlsl, PartsOfZeroAndOfWhatIsNotFinite) {
+  TestShader shader(ShaderParts{.body = R"(
+%f = OpExtInst %frexp %glsl FrexpStruct %va
+%significand = OpCompositeExtract %v4 %f 0
+%exponent = OpCompositeExtract %i4 %f 1
+%e = OpBitcast %u4 %exponent
+OpStore %out %significand
+OpStore %iout %e
+)",
+                                .globals = "%frexp = OpTypeStruct %v4 %i4\n"});
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> same{0.0f, -0.0f, kInfinity, -kInfinity};
+  for (std::uint32_t lane = 0; lane < 4; ++lane) shader.set(0, 0, lane, same[lane]);
+  shader.set(0, 0, 4, std::numeric_limits<float>::quiet_NaN());
+  shader.run();
+  for (std::uint32_t lane = 0; lane < 4; ++lane) {
+    EXPECT_EQ(shader.number(0, lane), same[lane]);
+    EXPECT_EQ(std::signbit(shader.number(0, lane)), std::signbit(same[lane]));
+  }
+  EXPECT_TRUE(std::isnan(shader.number(0, 4)));
+  for (std::uint32_t lane = 0; lane < 5; ++lane) EXPECT_EQ(shader.integer(0, lane), 0u);
+}
+
+TEST(SpirvGlsl, PowersOfTwoOutsideTheRangeOfFloats) {
+  TestShader shader(
+      ShaderParts{.body = "%e = OpBitcast %i4 %vi\n%r = OpExtInst %v4 %glsl Ldexp %va %e\nOpStore %out %r"});
+  struct Case {
+    float a;
+    std::int32_t exponent;
+    float expected;
+  };
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<Case> cases{{1, 1000, kInfinity},
+                                {1, -1000, 0},
+                                {0x1p-149f, 276, 0x1p127f},
+                                {0x1p127f, -276, 0x1p-149f},
+                                {-1.5f, std::numeric_limits<std::int32_t>::max(), -kInfinity},
+                                {1.5f, std::numeric_limits<std::int32_t>::min(), 0},
+                                {0, 1000, 0}};
+  for (std::uint32_t lane = 0; lane < cases.size(); ++lane) {
+    shader.set(0, 0, lane, cases[lane].a);
+    shader.set_integer(3, 0, lane, static_cast<std::uint32_t>(cases[lane].exponent));
+  }
+  shader.run();
+  for (std::uint32_t lane = 0; lane < cases.size(); ++lane)
+    EXPECT_EQ(shader.number(0, lane), cases[lane].expected) << cases[lane].a << " " << cases[lane].exponent;
+}
+
+// Where both are as large, and where both are 0.
+TEST(SpirvGlsl, AnglesOfEqualSides) {
+  TestShader shader(ShaderParts{.body = "%r = OpExtInst %v4 %glsl Atan2 %va %vb\nOpStore %out %r"});
+  constexpr float kInfinity = std::numeric_limits<float>::infinity(), kEighth = 0.785398163f;
+  shader.set(0, 0, 0, 3), shader.set(1, 0, 0, 3);
+  shader.set(0, 0, 1, kInfinity), shader.set(1, 0, 1, kInfinity);
+  shader.set(0, 0, 2, -2), shader.set(1, 0, 2, -2);
+  shader.set(0, 0, 3, 0), shader.set(1, 0, 3, 0);
+  shader.run();
+  EXPECT_EQ(shader.number(0, 0), kEighth);
+  EXPECT_EQ(shader.number(0, 1), kEighth);
+  EXPECT_EQ(shader.number(0, 2), -2.35619449f);
+  EXPECT_EQ(shader.number(0, 3), 0);
 }
 
 TEST(SpirvGlsl, Integers) {
