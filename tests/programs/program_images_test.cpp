@@ -168,8 +168,7 @@ TEST(ProgramImages, BordersHaveTheChannelsOfTheFormat) {
   EXPECT_EQ(at_border(R32G32B32A32_SINT, {-2, 7, 0, 1}), (Bits{0xfffffffe, 7, 0, 1}));
 }
 
-// Each lane reads texel 5 of a row of 4 with another sampler of an array: one of its edge, one of its border, and one
-// that nobody has bound.
+// Others are of another set or binding, or of an element that no array has.
 TEST(ProgramImages, AreBoundBySetBindingAndElement) {
   const std::vector<ProgramImage> images{numbered(ImageShape::d1, 4), numbered(ImageShape::d1, 2)};
   LaneProgram program;
@@ -187,6 +186,7 @@ TEST(ProgramImages, AreBoundBySetBindingAndElement) {
   EXPECT_EQ(bound.images[0][2].image, &images[1]);
 }
 
+// A 2D image may be a face of a cube or have one row, and a cube may be six square layers, as captures have them.
 TEST(ProgramImages, AreNotBoundIfTheShaderExpectsOtherDimensions) {
   using enum ImageShape;
   const std::vector<ProgramImage> images{numbered(d1, 4),          numbered(d2, 2, 2),    numbered(d2, 2, 2, 1, 6),
@@ -204,6 +204,8 @@ TEST(ProgramImages, AreNotBoundIfTheShaderExpectsOtherDimensions) {
   }
 }
 
+// Each lane reads texel 5 of a row of 4 with another sampler of an array: one of its edge, one of its border, and one
+// that nobody has bound.
 TEST(ProgramImages, SamplersOfAnArray) {
   const std::vector<ProgramImage> images{numbered(ImageShape::d1, 4)};
   std::vector<ProgramSampler> samplers{nearest(SamplerWrap::clamp_to_edge), nearest(SamplerWrap::clamp_to_border)};

@@ -138,8 +138,10 @@ TEST(DrawPlan, NotesWhatIsTranslucentBeforeOpaqueDraws) {
   // The same of the mesh, and then with a colour in its place, which is opaque.
   draws.trace.meshes[1].materials = {0};
   draws.frame.draws[1].material.reset();
+  ASSERT_EQ(draws.notes().size(), 1u);
   EXPECT_EQ(draws.notes()[0].reason, "translucent, before opaque draws");
   draws.frame.draws[1].kd = glm::vec3(1);
+  ASSERT_EQ(draws.notes().size(), 1u);
   EXPECT_EQ(draws.notes()[0].reason, "depth is tested but not written");
 }
 

@@ -63,9 +63,10 @@ TEST(VertexSetup, DropsWhatCannotBeSeen) {
   const auto left = [](std::vector<glm::vec3> positions) {
     Scene scene = clip_space_scene(positions);  // 64 x 32 px
     const std::size_t found = scene.setup().triangles.size();
-    // The same in a scissor that cuts none of these.
+    // The same in a scissor that cuts nothing of the frame that one of these covers.
     scene.frame.draws[0].state.scissor = Scissor{1, 1, 62, 30};
-    EXPECT_EQ(scene.setup().triangles.size(), found);
+    EXPECT_EQ(scene.setup().triangles.size(), found)
+        << positions[0].x << " " << positions[1].x << " " << positions[1].y;
     return found;
   };
   EXPECT_EQ(left({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), 1u);

@@ -257,7 +257,7 @@ TEST(SpirvArithmetic, HalfFloats) {
          [](const Inputs& in) { return half_value(static_cast<std::uint16_t>(in.i)); });
 }
 
-// Halves as codes: the largest, ties below the least one, and what is not finite.
+// Halves as codes: around the largest one, ties between small ones, and what is not finite.
 TEST(SpirvArithmetic, EdgesOfHalfFloats) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const std::vector<std::pair<float, std::uint32_t>> codes{
@@ -275,7 +275,8 @@ TEST(SpirvArithmetic, EdgesOfHalfFloats) {
   EXPECT_GT(shader.integer(0, after_all) & 0x7fffu, 0x7c00u);
 }
 
-// Of what is not a number SPIR-V leaves the integer open; here it is 0.
+// SPIR-V leaves open what becomes of a number that no integer is near. Here NaN becomes 0, and an infinity the least
+// integer or the largest one that is a float.
 TEST(SpirvArithmetic, IntegersOfWhatIsNotFinite) {
   TestShader shader(ShaderParts{.body =
                                     "%x = OpConvertFToS %i4 %va\n%y = OpBitcast %u4 %x\n%z = OpConvertFToU %u4 %va\n"

@@ -107,7 +107,7 @@ TEST(SpirvGlsl, Limits) {
   expect("Acosh", 1, 0), expect("Atanh", 1, kInfinity), expect("Sinh", kInfinity, kInfinity);
   expect("InverseSqrt", 0, kInfinity), expect("Sqrt", -1, kNan), expect("FSign", -0.0f, 0);
   expect("Sin", -1e38f, 0), expect("FSign", kInfinity, 1), expect("FSign", -3, -1);
-  for (const std::string round : {"Round", "RoundEven"}) {
+  for (const std::string round : {"Round", "RoundEven"}) {  // Round may choose, and takes the even number as well
     expect(round, 2.5f, 2), expect(round, -3.5f, -4), expect(round, 8388607.5f, 8388608);
     expect(round, 8388609, 8388609), expect(round, -1e38f, -1e38f), expect(round, -kInfinity, -kInfinity);
     expect(round, kNan, kNan);
@@ -287,6 +287,7 @@ OpStore %iout %g
   }
 }
 
+// The specification leaves open what is not finite; here it is its own significand, with an exponent of 0.
 TEST(SpirvGlsl, PartsOfZeroAndOfWhatIsNotFinite) {
   TestShader shader(ShaderParts{.body = R"(
 %f = OpExtInst %frexp %glsl FrexpStruct %va
@@ -310,6 +311,7 @@ OpStore %iout %e
   for (std::uint32_t lane = 0; lane < 5; ++lane) EXPECT_EQ(shader.integer(0, lane), 0u);
 }
 
+// The specification leaves large exponents open; here the result is the nearest float all the same.
 TEST(SpirvGlsl, PowersOfTwoOutsideTheRangeOfFloats) {
   TestShader shader(
       ShaderParts{.body = "%e = OpBitcast %i4 %vi\n%r = OpExtInst %v4 %glsl Ldexp %va %e\nOpStore %out %r"});
@@ -335,7 +337,7 @@ TEST(SpirvGlsl, PowersOfTwoOutsideTheRangeOfFloats) {
     EXPECT_EQ(shader.number(0, lane), cases[lane].expected) << cases[lane].a << " " << cases[lane].exponent;
 }
 
-// Where both are as large, and where both are 0.
+// Where both sides are equally long, and where both are 0, which the specification leaves open.
 TEST(SpirvGlsl, AnglesOfEqualSides) {
   TestShader shader(ShaderParts{.body = "%r = OpExtInst %v4 %glsl Atan2 %va %vb\nOpStore %out %r"});
   constexpr float kInfinity = std::numeric_limits<float>::infinity(), kEighth = 0.785398163f;

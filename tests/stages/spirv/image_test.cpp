@@ -266,8 +266,8 @@ TEST(SpirvImages, FetchesAndQueriesOfAnElement) {
   EXPECT_EQ(shader.counts.texture_requests, kShaderLanes);  // queries read no texels
 }
 
-TEST(SpirvImages, NoTraceHasImagesWithSeveralSamplesOrThatShadersWriteTo) {
-  // `type`: of the image, after what a texel is of. `read`: a texel of %image_ at %place.
+TEST(SpirvImages, ImagesWithSeveralSamplesAndStorageImagesAreRefused) {
+  // `type`: the operands of OpTypeImage after a texel's type. `read`: what makes a texel of %image_ at %place.
   const auto error_of = [](const std::string& type, const std::string& read) {
     const ShaderParts parts{.body = "%image_ = OpLoad %image %kept\n%place = OpVectorShuffle %u2 %vi %vi 0 1\n" +
                                     ("%texel = " + read) + "\nOpStore %out %texel\n",

@@ -72,8 +72,9 @@ TEST(SpirvMemory, OffsetsOfMembersElementsAndColumns) {
   EXPECT_EQ(shader.number(3, 7), (112 + 1 * 16 + 8) / 4);  // column 1, row 2
 }
 
-// struct { vec4 first; struct { float x; vec3 list[4]; layout(row_major) mat2x3 rows; mat2x3 columns } all; }, where
-// `all` is copied as a whole, and lanes choose numbers of the copy.
+// struct { vec4 first; struct { float x; vec3 list[4]; layout(row_major) mat2x3 rows; mat2x3 columns } all; }
+// `all` is copied as a whole, and lanes choose numbers of the copy. One of list[3] is changed, because SPIRV-Tools
+// would have lanes read the buffer otherwise.
 TEST(SpirvMemory, StructuresAreReadAsAWhole) {
   TestShader shader(ShaderParts{.body = R"(
 %copy = OpVariable %to_copy Function
@@ -81,6 +82,8 @@ TEST(SpirvMemory, StructuresAreReadAsAWhole) {
 %p = OpAccessChain %to_inner %buffer %i1
 %all = OpLoad %inner %p
 OpStore %copy %all
+%p4 = OpAccessChain %to_number %copy %i1 %i3_ %i0
+OpStore %p4 %f0
 %p0 = OpAccessChain %to_number %copy %i0
 %x = OpLoad %float %p0
 %p1 = OpAccessChain %to_number %copy %i1 %vi0 %vi1
@@ -125,7 +128,7 @@ OpMemberDecorate %inner 3 ColMajor
     shader.set_integer(3, 0, lane, lane % 2), shader.set_integer(3, 1, lane, lane / 2 % 3);
   shader.run();
   for (std::uint32_t lane = 0; lane < kShaderLanes; ++lane) {
-    const float column = static_cast<float>(lane % 2), row = static_cast<float>(lane / 2 % 3);
+    const float column = static_cast<float>(lane % 2), row = static_cast<float>(lane / 2 % 3);  // or element and part
     EXPECT_EQ(shader.number(0, lane), 4);
     EXPECT_EQ(shader.number(1, lane), 8 + 4 * column + row);
     EXPECT_EQ(shader.number(2, lane), 24 + column + 4 * row);

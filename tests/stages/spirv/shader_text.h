@@ -31,7 +31,7 @@ struct ShaderParts {
   std::string functions = "";
   std::string capabilities = "";
   std::string interface = "";  // more variables of the entry point
-  std::string modes = "";
+  std::string modes = "";      // and strings of a source
 };
 
 inline std::string shader_text(const ShaderParts& parts) {
