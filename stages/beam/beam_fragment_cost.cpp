@@ -3,6 +3,8 @@
 #include <array>
 #include <bit>
 
+#include "simd/coverage.h"
+#include "simd/sample_mask.h"
 #include "stages/beam/specks.h"
 #include "stages/cost/counting.h"
 #include "stages/cost/plane_cost.h"
