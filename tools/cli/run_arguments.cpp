@@ -1,6 +1,7 @@
 #include "tools/cli/run_arguments.h"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <map>
