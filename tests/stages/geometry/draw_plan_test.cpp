@@ -519,6 +519,9 @@ TEST(DrawPlan, WhichSingleDrawsNeedTheApisOrder) {
   EXPECT_TRUE(needs([&](Draw& draw, Places& places) {
     put(places, 1), places[0].z = 2, places[1].z = 0, draw.state.depth.clip = false;
   })) << "1 where it is beyond";
+  EXPECT_TRUE(needs([&](Draw& draw, Places& places) { put(places, 2), draw.state.depth.clip = false; }));
+  EXPECT_FALSE(needs([&](Draw& draw, Places& places) { put(places, 2), draw.state.depth.bias.constant = -0.125f; }))
+      << "all is clipped";
   EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.near = draw.state.depth.far = 1; }));
   EXPECT_TRUE(needs([](Draw& draw, Places&) { draw.state.depth.bias.constant = 0.5f; })) << "0.5 and 0.5 are 1";
   EXPECT_TRUE(needs([](Draw& draw, Places&) {
