@@ -2,6 +2,7 @@
 #include "stages/cost/counter_registry.h"
 
 #include "pipeline/technique_table.h"
+#include "tests/pipeline/surface_traces.h"
 #include "tests/stages/surface_scene.h"
 #include "tests/test.h"
 

@@ -2,6 +2,7 @@
 
 #include "pipeline/memory/dram_tally.h"
 
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
 

@@ -1,6 +1,7 @@
 // What `beampipe model` prints for people: rows that say the same are one, and what limits each stage.
 
 #include "tests/tools/cli/program_fixture.h"
+#include "traces/files/json.h"
 
 namespace beampipe::model_text_test {
 

@@ -5,6 +5,7 @@
 
 #include "tests/tools/program.h"
 #include "tests/tools/varying_trace.h"
+#include "tools/files/image_io.h"
 
 namespace beampipe::error_split_test {
 

@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "tests/tools/program.h"
+#include "tools/report/gnuplot.h"
 #include "tools/report/label_placement.h"
 #include "traces/files/image_file.h"
 
