@@ -186,7 +186,7 @@ TEST(ProgramImages, AreBoundBySetBindingAndElement) {
   EXPECT_EQ(bound.images[0][2].image, &images[1]);
 }
 
-// A 2D image may be a face of a cube or have one row, and a cube may be six square layers, as captures have them.
+// What a shader reads as 2D may be stored as 1D or as a cube, and a cube as six square layers.
 TEST(ProgramImages, AreNotBoundIfTheShaderExpectsOtherDimensions) {
   using enum ImageShape;
   const std::vector<ProgramImage> images{numbered(d1, 4),          numbered(d2, 2, 2),    numbered(d2, 2, 2, 1, 6),

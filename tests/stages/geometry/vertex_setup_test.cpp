@@ -63,7 +63,7 @@ TEST(VertexSetup, DropsWhatCannotBeSeen) {
   const auto left = [](std::vector<glm::vec3> positions) {
     Scene scene = clip_space_scene(positions);  // 64 x 32 px
     const std::size_t found = scene.setup().triangles.size();
-    // The same in a scissor that cuts nothing of the frame that one of these covers.
+    // The same with a scissor that leaves out a border of one pixel, where none of these is seen.
     scene.frame.draws[0].state.scissor = Scissor{1, 1, 62, 30};
     EXPECT_EQ(scene.setup().triangles.size(), found)
         << positions[0].x << " " << positions[1].x << " " << positions[1].y;

@@ -287,7 +287,7 @@ OpStore %iout %g
   }
 }
 
-// The specification leaves open what is not finite; here it is its own significand, with an exponent of 0.
+// The specification leaves infinities and NaN open; here each is its own significand, with an exponent of 0.
 TEST(SpirvGlsl, PartsOfZeroAndOfWhatIsNotFinite) {
   TestShader shader(ShaderParts{.body = R"(
 %f = OpExtInst %frexp %glsl FrexpStruct %va
